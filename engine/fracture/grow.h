@@ -1,0 +1,46 @@
+// Crack growth (paper 6.3, algorithms 2 and 3; the design's O1-O8): from a seed on the surface to a sheet that is complete
+// (its whole border lies outside the body) or arrested.
+#pragma once
+#include <string>
+
+#include "engine/fracture/crack_field.h"
+#include "engine/fracture/sheet.h"
+#include "engine/mesh/bvh.h"
+
+namespace sherd {
+
+struct CrackSeed {
+  Vec3 position;    // on the surface, material space
+  Vec3 normal;      // outward unit surface normal there
+  PrincipalStress stress;
+  std::uint32_t vertex = kNone;  // mesh vertex it came from
+};
+
+struct GrowthOptions {
+  Real edge_length = 0;           // h: target edge of body and sheet, m
+  Real propagation_strength = 0;  // Pa
+  Real thickness = 0;             // t, m (decides nothing while growing but the overshoot's lower bound)
+  Real speed = 0.5;               // the paper's alpha: fraction of h per sub-step at the initiation stress
+  Real overshoot = 0.15;          // of h: how far past the surface an exited node is placed
+  int max_steps = 0;              // 0: 4 x (bounding-box diagonal / edge_length) + 64
+};
+
+enum class GrowthOutcome { kComplete, kArrested, kRejectedSeed, kFailed };
+
+struct GrowthResult {
+  GrowthOutcome outcome = GrowthOutcome::kFailed;
+  CrackSheet sheet;
+  int ladder_level = 0;  // 0: the true field; 1..4: blended towards the seed's plane (O8)
+  int steps = 0;
+  Real area = 0;         // of the sheet part inside the body, m^2
+  std::string reason;    // of a rejection or failure
+};
+
+// `body` must describe a valid mesh. Never throws for geometric trouble: the outcome says what happened. Deterministic.
+GrowthResult grow_crack(const TriangleBvh& body, const CrackField& field, const CrackSeed& seed,
+                        const GrowthOptions& options);
+// The same from an arrested sheet (O13): labels the front anew and goes on.
+GrowthResult resume_crack(const TriangleBvh& body, const CrackField& field, const CrackSheet& sheet,
+                          const GrowthOptions& options);
+
+}  // namespace sherd

@@ -1,0 +1,13 @@
+// Sheet to slab (the design's O9): full thickness where the crack leaves the body, zero at an arrested front.
+#pragma once
+#include <optional>
+
+#include "engine/fracture/sheet.h"
+
+namespace sherd {
+
+// A closed, embedded, outward-oriented mesh around the sheet, or nothing with the reason when it is not embedded.
+// Every face has FaceKind::kCrack and the given crack id.
+std::optional<SurfaceMesh> thicken(const CrackSheet& sheet, Real thickness, std::int32_t crack_id, std::string& reason);
+
+}  // namespace sherd

@@ -1,0 +1,225 @@
+#include "engine/mesh/bvh.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace sherd {
+namespace {
+
+constexpr std::uint32_t kLeafSize = 4;
+
+Box box_of(const std::array<Vec3, 3>& c) {
+  Box b;
+  for (const Vec3& p : c) b.grow(p);
+  return b;
+}
+
+Real box_distance2(const Box& b, const Vec3& p) {
+  const Vec3 d = max(max(b.low - p, p - b.high), Vec3{0, 0, 0});
+  return norm2(d);
+}
+
+// Slab test widened by a few rounding errors, so that a ray along a box face is never lost.
+bool ray_hits_box(const Box& b, const Vec3& o, const Vec3& inverse, Real t0, Real t1) {
+  for (int k = 0; k < 3; ++k) {
+    Real a = (b.low[k] - o[k]) * inverse[k], c = (b.high[k] - o[k]) * inverse[k];
+    if (a > c) std::swap(a, c);
+    if (std::isnan(a) || std::isnan(c)) {
+      if (o[k] < b.low[k] || o[k] > b.high[k]) return false;
+      continue;
+    }
+    const Real slack = 1e-14 * (std::abs(a) + std::abs(c));
+    t0 = std::max(t0, a - slack), t1 = std::min(t1, c + slack);
+  }
+  return t0 <= t1;
+}
+
+}  // namespace
+
+Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const Real d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vec3 bp = p - b;
+  const Real d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const Real vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 / (d1 - d3));
+  const Vec3 cp = p - c;
+  const Real d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const Real vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 / (d2 - d6));
+  const Real va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  const Real s = 1 / (va + vb + vc);
+  return a + ab * (vb * s) + ac * (vc * s);
+}
+
+TriangleBvh::TriangleBvh(const SurfaceMesh& mesh) {
+  corners_.resize(mesh.triangle_count());
+  for (std::size_t t = 0; t < corners_.size(); ++t)
+    corners_[t] = {mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
+  order_.resize(corners_.size());
+  std::iota(order_.begin(), order_.end(), 0u);
+  if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
+}
+
+std::uint32_t TriangleBvh::build(std::uint32_t first, std::uint32_t count) {
+  const auto id = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  Box box, centres;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    const Box b = box_of(corners_[order_[i]]);
+    box.grow(b), centres.grow(b.centre());
+  }
+  nodes_[id].box = box;
+  if (count <= kLeafSize) {
+    nodes_[id].first = first, nodes_[id].count = count;
+    return id;
+  }
+  const Vec3 extent = centres.high - centres.low;
+  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
+  const std::uint32_t half = count / 2;
+  const auto begin = order_.begin() + first;
+  std::nth_element(begin, begin + half, begin + count, [&](std::uint32_t a, std::uint32_t b) {
+    const Real ca = corners_[a][0][axis] + corners_[a][1][axis] + corners_[a][2][axis];
+    const Real cb = corners_[b][0][axis] + corners_[b][1][axis] + corners_[b][2][axis];
+    return ca != cb ? ca < cb : a < b;
+  });
+  build(first, half);
+  const std::uint32_t right = build(first + half, count - half);
+  nodes_[id].right = right;
+  return id;
+}
+
+TriangleBvh::Closest TriangleBvh::closest(const Vec3& p, Real max_distance) const {
+  Closest best;
+  best.distance2 = max_distance * max_distance;
+  if (nodes_.empty()) return best;
+  std::uint32_t stack[128];
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const Node& node = nodes_[stack[--top]];
+    if (box_distance2(node.box, p) > best.distance2) continue;
+    if (node.count > 0) {
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        const std::uint32_t f = order_[i];
+        const Vec3 q = closest_point_on_triangle(p, corners_[f][0], corners_[f][1], corners_[f][2]);
+        const Real d2 = distance2(p, q);
+        if (d2 < best.distance2 || (d2 == best.distance2 && f < best.face)) best = {q, f, d2};
+      }
+      continue;
+    }
+    const auto left = static_cast<std::uint32_t>(&node - nodes_.data()) + 1;
+    const Real dl = box_distance2(nodes_[left].box, p), dr = box_distance2(nodes_[node.right].box, p);
+    stack[top++] = dl < dr ? node.right : left;
+    stack[top++] = dl < dr ? left : node.right;
+  }
+  return best;
+}
+
+void TriangleBvh::all_hits(const Vec3& origin, const Vec3& direction, Real t_min, Real t_max,
+                           std::vector<Hit>& hits) const {
+  hits.clear();
+  if (nodes_.empty()) return;
+  const Vec3 inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
+  std::uint32_t stack[128];
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const std::uint32_t id = stack[--top];
+    const Node& node = nodes_[id];
+    if (!ray_hits_box(node.box, origin, inverse, t_min, t_max)) continue;
+    if (node.count == 0) {
+      stack[top++] = node.right;
+      stack[top++] = id + 1;
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const auto& c = corners_[order_[i]];
+      // Signed volumes of the line against the three edges: each edge is evaluated with its vertices in the same order of
+      // coordinates in both triangles that share it, so a ray through an edge is seen by exactly one of them (watertight).
+      Real w[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 &a = c[k], &b = c[(k + 1) % 3];
+        const bool swap = a.x != b.x ? a.x > b.x : (a.y != b.y ? a.y > b.y : a.z > b.z);
+        const Vec3 p = (swap ? b : a) - origin, q = (swap ? a : b) - origin;
+        const Real v = dot(direction, cross(p, q));
+        w[k] = swap ? -v : v;
+        // zero counts as positive for the canonical direction of the edge, negative for the other
+        if (v == 0) w[k] = swap ? -0x1p-1000 : 0x1p-1000;
+      }
+      const bool positive = w[0] > 0 && w[1] > 0 && w[2] > 0, negative = w[0] < 0 && w[1] < 0 && w[2] < 0;
+      if (!positive && !negative) continue;
+      const Vec3 n = cross(c[1] - c[0], c[2] - c[0]);
+      const Real denominator = dot(direction, n);
+      if (denominator == 0) continue;
+      const Real t = dot(c[0] - origin, n) / denominator;
+      if (t >= t_min && t <= t_max) hits.push_back({t, order_[i]});
+    }
+  }
+  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.face < b.face; });
+}
+
+bool TriangleBvh::inside(const Vec3& p) const {
+  if (nodes_.empty()) return false;
+  const Box& b = nodes_[0].box;
+  if (p.x < b.low.x || p.y < b.low.y || p.z < b.low.z || p.x > b.high.x || p.y > b.high.y || p.z > b.high.z) return false;
+  static const Vec3 directions[3] = {{0.5377, 0.1834, 0.8234}, {-0.7273, 0.6343, 0.2621}, {0.2192, -0.9413, -0.2570}};
+  std::vector<Hit> hits;
+  int votes = 0;
+  for (const Vec3& d : directions) {
+    all_hits(p, d, 0, std::numeric_limits<Real>::infinity(), hits);
+    votes += static_cast<int>(hits.size() % 2);
+  }
+  return votes >= 2;
+}
+
+void TriangleBvh::overlapping(const Box& box, std::vector<std::uint32_t>& faces) const {
+  faces.clear();
+  if (nodes_.empty()) return;
+  std::uint32_t stack[128];
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const std::uint32_t id = stack[--top];
+    const Node& node = nodes_[id];
+    if (!node.box.overlaps(box)) continue;
+    if (node.count == 0) {
+      stack[top++] = node.right;
+      stack[top++] = id + 1;
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+      if (box_of(corners_[order_[i]]).overlaps(box)) faces.push_back(order_[i]);
+  }
+  std::sort(faces.begin(), faces.end());
+}
+
+void TriangleBvh::overlapping_pairs(const TriangleBvh& other,
+                                    std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const {
+  pairs.clear();
+  if (nodes_.empty() || other.nodes_.empty()) return;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> stack{{0, 0}};
+  while (!stack.empty()) {
+    const auto [i, j] = stack.back();
+    stack.pop_back();
+    const Node &a = nodes_[i], &b = other.nodes_[j];
+    if (!a.box.overlaps(b.box)) continue;
+    if (a.count > 0 && b.count > 0) {
+      for (std::uint32_t p = a.first; p < a.first + a.count; ++p)
+        for (std::uint32_t q = b.first; q < b.first + b.count; ++q)
+          if (box_of(corners_[order_[p]]).overlaps(box_of(other.corners_[other.order_[q]])))
+            pairs.emplace_back(order_[p], other.order_[q]);
+    } else if (b.count > 0 || (a.count == 0 && a.box.diagonal() >= b.box.diagonal())) {
+      stack.emplace_back(i + 1, j), stack.emplace_back(a.right, j);
+    } else {
+      stack.emplace_back(i, j + 1), stack.emplace_back(i, b.right);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+}
+
+}  // namespace sherd
