@@ -1,0 +1,13 @@
+// Exact signs of orientation determinants: floating-point filter first, then exact expansion arithmetic (Shewchuk 1997).
+// Inputs are finite doubles without overflow or underflow in the products (coordinates between 1e-60 and 1e60 in size, or 0).
+#pragma once
+#include "kernels/core/vec3.h"
+
+namespace sherd {
+
+// Sign of ((b-a) x (c-a)) . (d-a): +1 when d lies on the side the normal of the counter-clockwise triangle abc points to.
+int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+// Sign of (b-a) x (c-a) in the plane: +1 when abc turns counter-clockwise.
+int orient2d(Real ax, Real ay, Real bx, Real by, Real cx, Real cy);
+
+}  // namespace sherd
