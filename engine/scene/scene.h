@@ -1,0 +1,151 @@
+// A scene: everything a run is told, checked before anything is made. Read from TOML (scenes/README.md lists the keys).
+// SI units; world: right-handed, y up.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/material/material.h"
+#include "engine/mesh/surface_mesh.h"
+
+namespace sherd {
+
+// Generated solids; lengths in metres. make_shape() says how each lies in its own coordinates.
+struct BoxShape {
+  Vec3 size;
+};
+struct SphereShape {
+  Real radius = 0;
+};
+struct HollowSphereShape {
+  Real radius = 0, inner_radius = 0;
+};
+struct PlateShape {
+  Real width = 0, depth = 0, thickness = 0;  // along x, z, y
+};
+struct BarShape {
+  Real length = 0, height = 0, width = 0;  // along x, y, z
+};
+struct CylinderShape {
+  Real radius = 0, height = 0;
+};
+struct DinnerPlateShape {
+  Real radius = 0, thickness = 0;
+};
+struct GobletShape {
+  Real height = 0, bowl_radius = 0, wall = 0;
+};
+struct TorusShape {
+  Real radius = 0, tube_radius = 0;
+};
+using ShapeSpec = std::variant<BoxShape, SphereShape, HollowSphereShape, PlateShape, BarShape, CylinderShape,
+                               DinnerPlateShape, GobletShape, TorusShape>;
+
+// How large the mesh of a file becomes; the factor is uniform.
+enum class MeshFit {
+  kScale,   // multiply coordinates by `amount`
+  kHeight,  // make the extent along the file's y axis `amount` metres
+  kSize,    // make the largest extent `amount` metres
+};
+struct MeshSpec {
+  std::filesystem::path file;  // absolute, or relative to the working directory; exists
+  MeshFit fit = MeshFit::kScale;
+  Real amount = 1;
+  Real max_hole = 0;  // holes up to this diameter (m, after scaling) are filled; 0 asks for 5 % of the diagonal
+};
+
+enum class Anchor {
+  kCentreOfMass,  // `position` is where the centre of mass goes
+  kBase,  // `position` is where the lowest point goes (y), under the bounding box's centre (x, z), after rotation
+};
+
+struct SceneBody {
+  std::string name;  // unique; letters, digits, '_' and '-', so that it can name files
+  std::variant<MeshSpec, ShapeSpec> source;
+  Real edge_length = 0;  // target edge of the surface mesh, m; 0 asks for 1/40 of the diagonal
+  Anchor anchor = Anchor::kCentreOfMass;
+  Vec3 position;          // m
+  Vec3 rotation;          // rotation vector (unit axis times angle), radians, material to world
+  Vec3 velocity;          // of the centre of mass, m/s
+  Vec3 angular_velocity;  // rad/s, world
+  Material material;      // resolved: preset with the scene's changes
+  bool fixed = false;
+  bool breakable = true;       // false for every fixed body
+  std::optional<Vec3> colour;  // linear RGB, 0..1; nothing: the renderer chooses
+  std::optional<Vec3> crack_colour;
+};
+
+struct SceneGround {
+  bool enabled = true;
+  Real height = 0;         // m, plane y = height
+  Real restitution = 0.2;  // 0..1
+  Real friction = 0.6;     // >= 0
+};
+
+struct SceneContact {
+  std::optional<Real> duration;      // s; nothing: Hertz impact time
+  Real min_duration = 1e-3;          // s; lower bound of the Hertz time, the time step unless the scene says otherwise
+  std::optional<Real> patch_radius;  // m; nothing: Hertz contact radius
+  Real min_patch_radius = 0;         // m; lower bound of the Hertz radius
+};
+
+struct SceneSolver {
+  Real tolerance = 1e-6;  // relative residual
+  int max_iterations = 300;
+};
+
+struct SceneFracture {
+  bool enabled = true;
+  int max_cracks = 8;               // per body and event
+  int max_fragments = 200;          // alive in the scene; at this number nothing breaks any more
+  Real min_fragment_volume = 1e-4;  // of the scene body's volume; smaller pieces neither appear nor break
+  int max_generation = 4;           // a fragment of this generation breaks no further (scene bodies are generation 0)
+  Real speed = 0.5;                 // fraction of an edge a front moves per sub-step at the initiation strength (alpha)
+};
+
+struct SceneCamera {
+  bool automatic = true;  // frame the bodies and where they will fall; then eye and target are unused
+  Vec3 eye{0, 1, 3}, target, up{0, 1, 0};
+  Real field_of_view = 40;  // vertical, degrees
+};
+
+struct SceneLight {
+  Vec3 direction{0.5, 1.0, 0.4};  // towards the sun
+};
+
+struct SceneOutput {
+  int width = 1280, height = 720;  // pixels
+  int samples = 4;                 // per pixel: 1, 2, 4 or 8
+  bool frames = true, movie = true, pieces = true;
+  std::optional<std::size_t>
+      material_view;  // body (index in Scene::bodies) also drawn in material space with its cracks
+};
+
+struct Scene {
+  std::filesystem::path file;  // as given to load_scene
+  Vec3 gravity{0, -9.81, 0};   // m/s^2
+  Real time_step = 1e-3;       // s
+  Real duration = 2;           // s
+  Real frame_rate = 60;        // frames per second of simulated time, at most one a step
+  std::vector<SceneBody> bodies;
+  SceneGround ground;
+  SceneContact contact;
+  SceneSolver solver;
+  SceneFracture fracture;
+  SceneCamera camera;
+  SceneLight light;
+  SceneOutput output;
+};
+
+// Throws InputError naming every problem found, one a line and in file order, each as
+// "file:line:column: key: value X not allowed; allowed range Y". Creates nothing; mesh files are only looked for.
+Scene load_scene(const std::filesystem::path& file);
+
+// The closed surface of a generated solid about its own origin, with the given target edge length (m, > 0).
+SurfaceMesh make_shape(const ShapeSpec& shape, Real edge_length);
+// Length of the bounding-box diagonal of a generated solid, m.
+Real shape_diagonal(const ShapeSpec& shape);
+
+}  // namespace sherd
