@@ -1,0 +1,20 @@
+// Mesh files. Bytes depend on the mesh alone. A file is written under a temporary name beside its final one and renamed
+// when complete, so a half-written mesh never bears the final name. InputError names the file when it cannot be
+// written.
+#pragma once
+#include <string>
+
+#include "engine/mesh/surface_mesh.h"
+
+namespace sherd {
+
+enum class PlyPrecision { kFloat, kDouble };
+
+// Binary little-endian PLY. When any face is a crack face, each face also has `uchar kind` (0 original, 1 crack),
+// `int crack` and `int source` (FaceAttributes).
+void write_ply(const SurfaceMesh& mesh, const std::string& path, PlyPrecision precision = PlyPrecision::kFloat);
+// Wavefront OBJ with 17 significant digits (doubles survive); crack faces are in the group "crack", others in
+// "original".
+void write_obj(const SurfaceMesh& mesh, const std::string& path);
+
+}  // namespace sherd
