@@ -22,6 +22,8 @@ struct FrameBody {
   Vec3 translation;
   Colour colour;                            // original surface
   Colour crack_colour;                      // faces of FaceKind::kCrack
+  std::uint32_t parent = kNone;             // id of the body it broke off; kNone for a body of the scene
+  float opacity = 1;                        // of the original surface, 0..1; crack faces stay opaque
 };
 
 struct Frame {
