@@ -17,7 +17,7 @@ namespace {
 constexpr int kShadowTexels = 2048;
 constexpr int kGroundSectors = 64;
 constexpr int kLargestSide = 8192;      // pixels
-constexpr Real kGroundReach = 8;        // eye distances from the target to where the ground has become sky
+constexpr Real kGroundReach = 5;        // eye distances from the target to where the ground has become sky
 constexpr Real kShadowReach = 12;       // eye distances from the target within which bodies cast shadows
 constexpr Real kOcclusionRadius = 0.1;  // of the picture's height at the target
 constexpr Real kSunTangent = 0.07;      // half-width of the sun seen from the scene: a large, soft lamp

@@ -32,15 +32,18 @@ vec2 spiral(int i, int n, float turn) {
   return sqrt((float(i) + 0.5) / float(n)) * vec2(cos(angle), sin(angle));
 }
 
-float sunlight(vec3 p, vec3 n, float cosine) {
+// Beyond the map's far end nothing was drawn: depth 1 there is lit.
+float reference(float depth, vec2 slope, vec2 tap) { return min(depth + dot(slope, tap), 1.0); }
+
+float sunlight(vec3 p, vec3 n) {
+  vec3 m = u_sun_axes * n;
   float texel = u_shadow_texel * u_sun_width;
-  vec3 q = p + n * texel * (0.8 + 1.6 * (1.0 - cosine));
+  vec3 q = p + n * texel * (1.0 + 2.0 * (1.0 - max(m.z, 0.0)));
   vec3 s = 0.5 * (u_sun_clip * vec4(q, 1.0)).xyz + 0.5;
   if (any(lessThan(s.xy, vec2(0.0))) || any(greaterThan(s.xy, vec2(1.0)))) return 1.0;
-  vec3 m = u_sun_axes * n;
   // d depth / d uv on the receiver's plane; steep planes are cut off where the cosine law has darkened them anyway.
   vec2 slope = m.xy / max(m.z, 0.2) * (u_sun_width / u_sun_depth);
-  float constant = 0.5 * texel / u_sun_depth;
+  float constant = texel / u_sun_depth;
   float turn = 6.2831853 * fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy), vec2(0.06711056, 0.00583715))));
 
   float reach = clamp(u_sun_tangent * u_sun_depth / u_sun_width, 3.0 * u_shadow_texel, 0.05);
@@ -48,18 +51,18 @@ float sunlight(vec3 p, vec3 n, float cosine) {
   for (int i = 0; i < 12; ++i) {
     vec2 d = reach * spiral(i, 12, turn);
     float depth = texture(u_shadow_depth, s.xy + d).r;
-    if (depth < min(s.z, 1.0) + dot(slope, d) - constant - abs(slope.x + slope.y) * 0.5 * u_shadow_texel)
+    if (depth < reference(s.z, slope, d) - constant - abs(slope.x + slope.y) * 0.5 * u_shadow_texel)
       blocker += depth, blockers += 1.0;
   }
   if (blockers == 0.0) return 1.0;
   float gap = max(s.z - blocker / blockers, 0.0) * u_sun_depth;
   float radius = clamp(u_sun_tangent * gap / u_sun_width, 1.6 * u_shadow_texel, reach);
   float lit = 0.0;
-  for (int i = 0; i < 20; ++i) {
-    vec2 d = radius * spiral(i, 20, turn);
-    lit += texture(u_shadow, vec3(s.xy + d, min(s.z, 1.0) + dot(slope, d) - constant));
+  for (int i = 0; i < 24; ++i) {
+    vec2 d = radius * spiral(i, 24, turn);
+    lit += texture(u_shadow, vec3(s.xy + d, reference(s.z, slope, d) - constant));
   }
-  return lit / 20.0;
+  return lit / 24.0;
 }
 )";
 
@@ -224,12 +227,15 @@ float ambient_light(float distance) {
 void main() {
   vec3 n = normalize(gl_FrontFacing ? v_normal : -v_normal), v = normalize(u_eye - v_position);
   float cosine = max(dot(n, u_sun), 0.0);
-  float sun = cosine > 0.0 ? cosine * sunlight(v_position, n, cosine) : 0.0;
+  // The map holds flat triangles: the flat normal, not the smooth one, says where they are.
+  vec3 flat_normal = normalize(cross(dFdx(v_position), dFdy(v_position)));
+  flat_normal = dot(flat_normal, n) < 0.0 ? -flat_normal : flat_normal;
+  float sun = cosine > 0.0 ? cosine * sunlight(v_position, flat_normal) : 0.0;
   float open = u_opacity < 1.0 ? 1.0 : ambient_light(-(u_view_axes * (v_position - u_eye)).z);
 
-  const vec3 kKey = vec3(1.02, 0.94, 0.82);
-  vec3 above = vec3(0.40, 0.44, 0.52), side = vec3(0.27, 0.27, 0.29);
-  vec3 below = vec3(0.10) + 0.22 * u_bounce;
+  const vec3 kKey = vec3(0.98, 0.89, 0.76);
+  vec3 above = vec3(0.30, 0.325, 0.37), side = vec3(0.19, 0.195, 0.205);
+  vec3 below = vec3(0.05) + 0.22 * u_bounce;
   vec3 hemisphere = n.y > 0.0 ? mix(side, above, n.y) : mix(side, below, -n.y);
   // A weak lamp behind the camera's shoulder keeps forms readable on the side away from the sun.
   vec3 fill_from = normalize(vec3(-u_sun.x, 0.35, -u_sun.z) + 0.8 * v);
@@ -242,13 +248,18 @@ void main() {
   vec3 h = normalize(v + u_sun);
   float facing = max(dot(n, v), 0.0), fresnel = 0.04 + 0.96 * pow(1.0 - max(dot(h, v), 0.0), 5.0);
   float rim = pow(1.0 - facing, 4.0);
-  vec3 gloss = u_gloss * (kKey * (sun * fresnel * 9.0 * pow(max(dot(n, h), 0.0), 48.0)) + 0.22 * rim * open * above);
+  vec3 gloss = u_gloss * (kKey * (sun * fresnel * 9.0 * pow(max(dot(n, h), 0.0), 48.0)) + 0.12 * rim * open * above);
   vec3 colour = u_colour * light + gloss;
 
-  float alpha = u_opacity < 1.0 ? mix(u_opacity, 1.0, 0.75 * rim) : 1.0;
+  float alpha = 1.0;
+  if (u_opacity < 1.0) {  // glass-like: dark, dense outlines, clear faces
+    float edge = pow(1.0 - facing, 2.0);
+    alpha = mix(u_opacity, 1.0, 0.8 * edge);
+    colour *= 1.0 - 0.55 * edge;
+  }
   if (u_fade > 0.0) {
     float away = length(v_position.xz) / u_fade;
-    colour = mix(colour, u_sky, smoothstep(0.25, 1.0, away));
+    colour = mix(colour, u_sky, smoothstep(0.1, 1.0, away));
   }
   o_colour = vec4(colour * alpha, alpha);
 }
