@@ -1,9 +1,11 @@
-// A crack while it grows: an open, oriented, embedded triangle sheet (the crack's mid-surface) whose border is the front.
+// A crack while it grows: an open, oriented, embedded triangle sheet (the crack's mid-surface) whose border is the
+// front.
 #pragma once
 #include <cstdint>
+#include <string>
 #include <vector>
 
-#include "engine/mesh/surface_mesh.h"
+#include "engine/mesh/bvh.h"
 
 namespace sherd {
 
@@ -16,10 +18,27 @@ enum class NodeState : std::uint8_t {
 };
 
 struct CrackSheet {
-  Vec3Column position;            // nodes, material space, m
-  Vec3Column normal;              // unit oriented crack normal (the stress eigenvector, sign-consistent)
-  std::vector<NodeState> state;   // per node
+  Vec3Column position;           // nodes, material space, m
+  Vec3Column normal;             // unit oriented crack normal (the stress eigenvector, sign-consistent)
+  std::vector<NodeState> state;  // per node
   std::vector<Triangle> triangles;
+  // For resume_crack: the largest principal stress at the seed (Pa) and the seed's crack normal (unit).
+  Real reference_stress = 0;
+  Vec3 seed_normal;
 };
+
+// Border loops of a sheet, each as nodes in the direction of the triangles' own border edges (the sheet lies to the
+// left seen against the crack normal), in order of their smallest node. Empty when the border is not a set of simple
+// loops.
+std::vector<std::vector<std::uint32_t>> border_loops(const CrackSheet& sheet);
+
+// The sheet's invariants: indices and coordinates valid, oriented 2-manifold with border without pinch nodes, no
+// degenerate triangle, no self-intersection. Returns the first violation in words, or an empty string.
+std::string check_sheet(const CrackSheet& sheet);
+
+// Area of the part of the sheet inside the body, m^2. Triangles that cross the surface are divided in four, then
+// clipped by the straight line between the crossings of their edges: exact where body and sheet are flat, an error of
+// (edge / 2)^2 / (8 curvature radius) per length of the crack's outline elsewhere.
+Real area_inside(const CrackSheet& sheet, const TriangleBvh& body);
 
 }  // namespace sherd

@@ -1,0 +1,176 @@
+#include "engine/fracture/front.h"
+
+#include <algorithm>
+
+#include "engine/fracture/seed.h"
+
+namespace sherd {
+namespace {
+
+// Sub-step length in units of h: proportional to the stress (eq. 9), but never so short that rows degenerate (and the
+// expensive field is asked more often than the mesh resolves) nor so long that a bend is missed.
+constexpr Real kMinStep = 0.4, kMaxStep = 0.8;
+constexpr Real kMinTurnCosine = 0.5;  // a crack turns by at most 60 degrees a step: eigenvectors swap at equal values
+constexpr Real kSteerRange = 5.0;     // of h: fronts that face each other closer than this bend towards each other
+constexpr Real kSteerFull = 1.5;      // of h: here they head straight for each other
+constexpr std::size_t kSteerLoopDistance = 5;
+constexpr Real kAheadFactor = 1.5;  // of h: paper 6.3 (b), smoothness: a node this far behind both neighbours follows
+
+Vec3 along(const Growth& g, std::uint32_t a, std::uint32_t b) {
+  return g.sheet.position[b] - g.sheet.position[a];
+}
+
+// The unit crack normal at a node from the field's eigenvector.
+Vec3 crack_normal(const Growth& g, const Vec3& eigenvector, const Vec3& previous) {
+  if (!is_finite(eigenvector) || norm2(eigenvector) == 0) return previous;
+  Vec3 e = normalized(canonical_sign(eigenvector));
+  if (dot(e, previous) < 0) e = -e;
+  const Vec3 blended =
+      normalized((1 - g.blend) * e + g.blend * (dot(g.seed_normal, previous) < 0 ? -g.seed_normal : g.seed_normal));
+  if (norm2(blended) > 0) e = blended;
+  const Real cosine = dot(e, previous);
+  if (cosine >= kMinTurnCosine) return e;
+  const Vec3 side = normalized(e - cosine * previous);
+  if (norm2(side) == 0) return previous;
+  return normalized(kMinTurnCosine * previous + std::sqrt(1 - kMinTurnCosine * kMinTurnCosine) * side);
+}
+
+void ask_field(Growth& g) {
+  Vec3Column points;
+  FrontLoop nodes;
+  for (const FrontLoop& loop : g.loops)
+    for (const std::uint32_t v : loop) {
+      const NodeState s = g.sheet.state[v];
+      if ((s != NodeState::kActive && s != NodeState::kArrested) || g.sheet.stress_known[v]) continue;
+      if (!g.body.inside(g.sheet.position[v])) continue;  // it exits when it is advanced
+      nodes.push_back(v), points.push_back(g.sheet.position[v]);
+    }
+  if (nodes.empty()) return;
+  std::vector<PrincipalStress> stress;
+  g.field.principal_stress(points, stress);
+  for (std::size_t i = 0; i < nodes.size() && i < stress.size(); ++i) {
+    g.sheet.stress[nodes[i]] = stress[i], g.sheet.stress_known[nodes[i]] = 1;
+    g.sheet.normal.set(nodes[i], crack_normal(g, stress[i].direction, g.sheet.normal[nodes[i]]));
+  }
+}
+
+bool lags_behind(const Growth& g, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  const Vec3 to_a = along(g, b, a), to_c = along(g, b, c), o = outward_direction(g, a, b, c);
+  if (dot(to_a, o) > kAheadFactor * g.h && dot(to_c, o) > kAheadFactor * g.h) return true;
+  const bool notch = dot(cross(-to_a, to_c), g.sheet.normal[b]) < 0;
+  return notch && dot(to_a, to_c) > 0.5 * norm(to_a) * norm(to_c);  // less than 60 degrees
+}
+
+Real step_length(const Growth& g, std::uint32_t v) {
+  const Real relative = g.reference_stress > 0 ? g.sheet.stress[v].value / g.reference_stress : 1;
+  return g.h * std::clamp(g.options.speed * relative, kMinStep, kMaxStep);
+}
+
+struct FrontNode {
+  std::uint32_t node;
+  std::size_t loop, place;
+  Vec3 outward;
+};
+
+// The nearest front node that faces `a`, or nothing.
+const FrontNode* facing_node(const Growth& g, const std::vector<FrontNode>& front, const FrontNode& a) {
+  const FrontNode* best = nullptr;
+  Real best2 = kSteerRange * kSteerRange * g.h * g.h;
+  const Vec3 at = g.sheet.position[a.node];
+  for (const FrontNode& w : front) {
+    const Vec3 d = g.sheet.position[w.node] - at;
+    const Real d2 = norm2(d);
+    if (w.node == a.node || d2 >= best2 || d2 == 0) continue;
+    if (w.loop == a.loop) {
+      const std::size_t n = g.loops[a.loop].size(), apart = w.place > a.place ? w.place - a.place : a.place - w.place;
+      if (std::min(apart, n - apart) < kSteerLoopDistance) continue;
+    }
+    const Real length = std::sqrt(d2);
+    if (dot(a.outward, d) <= 0.3 * length || dot(w.outward, d) >= -0.2 * length) continue;
+    if (dot(g.sheet.normal[a.node], g.sheet.normal[w.node]) <= 0) continue;
+    best = &w, best2 = d2;
+  }
+  return best;
+}
+
+// Without this, arms of one crack that run around a cavity pass each other and never close.
+void steer(Growth& g, const FrontNode& a, const FrontNode& w, Advance& advance) {
+  const Vec3 d = g.sheet.position[w.node] - g.sheet.position[a.node];
+  const Real length = norm(d),
+             weight = std::clamp(1 - (length - kSteerFull * g.h) / ((kSteerRange - kSteerFull) * g.h), 0.0, 1.0);
+  const Vec3 o = normalized((1 - weight) * advance.direction + weight / length * d);
+  const Vec3 n = g.sheet.normal[a.node], turned = normalized(n - dot(n, o) * o);
+  if (norm2(o) == 0 || norm2(turned) == 0) return;
+  advance.direction = o;
+  advance.length = std::min(advance.length, 0.45 * length);  // facing nodes never pass each other
+  g.sheet.normal.set(a.node, turned);
+}
+
+}  // namespace
+
+Growth::Growth(const TriangleBvh& body_, const CrackField& field_, const GrowthOptions& options_, Real edge,
+               Real overshoot_)
+    : body(body_),
+      field(field_),
+      options(options_),
+      h(edge),
+      overshoot(overshoot_),
+      sheet(edge, 1.1 * std::max(options_.thickness, 0.02 * edge)) {}
+
+Vec3 outward_direction(const Growth& g, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  const Vec3 e = g.sheet.normal[b], before = normalized(along(g, a, b)), after = normalized(along(g, b, c));
+  const Vec3 o = cross(before + after, e);
+  if (norm2(o) > 1e-4) return normalized(o - dot(o, e) * e);
+  // A spike (or a plane almost along the front): away from the neighbours, within the plane.
+  const Vec3 away = before - after;
+  return normalized(away - dot(away, e) * e);
+}
+
+bool is_clear(const Growth& g, std::uint32_t a, std::uint32_t b) {
+  std::vector<TriangleBvh::Hit> hits;
+  g.body.all_hits(g.sheet.position[a], along(g, a, b), 0, 1, hits);
+  return hits.empty();
+}
+
+bool is_dead(const Growth& g, std::uint32_t a, std::uint32_t b) {
+  return is_exited(g, a) && is_exited(g, b) && is_clear(g, a, b);
+}
+
+void label_front(Growth& g) {
+  ask_field(g);
+  for (const FrontLoop& loop : g.loops)
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const std::uint32_t v = loop[i];
+      NodeState& s = g.sheet.state[v];
+      if ((s != NodeState::kActive && s != NodeState::kArrested) || !g.sheet.stress_known[v]) continue;
+      const bool was_arrested = s == NodeState::kArrested;
+      s = g.sheet.stress[v].value >= g.options.propagation_strength ? NodeState::kActive : NodeState::kArrested;
+      if (s == NodeState::kArrested && was_arrested &&
+          lags_behind(g, loop[(i + loop.size() - 1) % loop.size()], v, loop[(i + 1) % loop.size()]))
+        s = NodeState::kActive;
+    }
+}
+
+std::vector<std::vector<Advance>> front_velocity(Growth& g) {
+  std::vector<FrontNode> front;
+  std::vector<std::vector<Advance>> velocity(g.loops.size());
+  for (std::size_t l = 0; l < g.loops.size(); ++l) {
+    const FrontLoop& loop = g.loops[l];
+    velocity[l].resize(loop.size());
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const std::uint32_t v = loop[i];
+      if (is_exited(g, v)) continue;
+      const Vec3 o = outward_direction(g, loop[(i + loop.size() - 1) % loop.size()], v, loop[(i + 1) % loop.size()]);
+      front.push_back({v, l, i, o});
+      if (g.sheet.state[v] == NodeState::kActive && norm2(o) > 0) velocity[l][i] = {o, step_length(g, v)};
+    }
+  }
+  for (const FrontNode& a : front) {
+    Advance& advance = velocity[a.loop][a.place];
+    if (!(advance.length > 0)) continue;
+    if (const FrontNode* w = facing_node(g, front, a)) steer(g, a, *w, advance);
+  }
+  return velocity;
+}
+
+}  // namespace sherd

@@ -1,0 +1,52 @@
+// The working state of one growing crack and the operations of one step. Internal to the fracture stage.
+// Conventions: a front loop lists its nodes in the direction of the triangles' own border edges, so the sheet lies to
+// the left seen against the crack normal e and the outward direction at a node is tangent x e.
+#pragma once
+#include "engine/fracture/grow.h"
+#include "engine/fracture/sheet_mesh.h"
+
+namespace sherd {
+
+using FrontLoop = std::vector<std::uint32_t>;
+
+struct Growth {
+  Growth(const TriangleBvh& body_, const CrackField& field_, const GrowthOptions& options_, Real edge, Real overshoot_);
+
+  const TriangleBvh& body;
+  const CrackField& field;
+  GrowthOptions options;
+  Real h;          // edge length of this attempt, m
+  Real overshoot;  // how far past the surface an exited node lies, m
+  Real blend = 0;  // 0: the field's crack normal; 1: the seed's (the ladder's lambda)
+  Vec3 seed_normal;
+  Real reference_stress = 0;  // Pa, the stress that gives the nominal step length
+  SheetMesh sheet;
+  std::vector<FrontLoop> loops;
+};
+
+// What a node wants to do in this step.
+struct Advance {
+  Vec3 direction;   // unit, in the crack plane, away from the sheet
+  Real length = 0;  // m; 0 for a node that stays
+};
+
+inline bool is_exited(const Growth& g, std::uint32_t v) {
+  return g.sheet.state[v] == NodeState::kExited;
+}
+// Unit in-plane bisector pointing off the sheet at node b between its loop neighbours a and c; zero when undefined.
+Vec3 outward_direction(const Growth& g, std::uint32_t a, std::uint32_t b, std::uint32_t c);
+// Does the segment between two nodes miss the body?
+bool is_clear(const Growth& g, std::uint32_t a, std::uint32_t b);
+// An edge of the front that needs no more growth: both nodes exited and nothing of the body between them.
+bool is_dead(const Growth& g, std::uint32_t a, std::uint32_t b);
+
+// O2: asks the field once for all front nodes whose stress is not known; sets states and crack normals.
+void label_front(Growth& g);
+// O3: direction and length for every loop's nodes, facing fronts steered towards each other.
+std::vector<std::vector<Advance>> front_velocity(Growth& g);
+// O6 and O7, up to two passes. Returns whether anything changed.
+bool remesh_front(Growth& g);
+// Border-edge bridges, ears and fills (O7). Returns whether anything changed.
+bool merge_fronts(Growth& g);
+
+}  // namespace sherd

@@ -1,0 +1,145 @@
+// O7: ears close notches, bridges join fronts that meet (paper fig. 12), a loop of three is filled. Nodes are never
+// welded: welding makes pinch nodes.
+#include <algorithm>
+
+#include "engine/fracture/front.h"
+
+namespace sherd {
+namespace {
+
+constexpr Real kEarCosine = 0.2, kEarLength = 1.5, kBridge = 1.9;  // lengths of h
+constexpr std::size_t kBridgeLoopDistance = 3;
+
+void retire(Growth& g, std::uint32_t v) {
+  g.sheet.state[v] = NodeState::kInterior;
+}
+
+bool close_ear(Growth& g, FrontLoop& loop, std::size_t i) {
+  const std::size_t n = loop.size();
+  if (n < 4) return false;
+  const std::uint32_t a = loop[(i + n - 1) % n], m = loop[i], b = loop[(i + 1) % n];
+  const Vec3 to_a = g.sheet.position[a] - g.sheet.position[m], to_b = g.sheet.position[b] - g.sheet.position[m];
+  if (dot(to_a, to_b) <= kEarCosine * norm(to_a) * norm(to_b) || norm(to_a - to_b) >= kEarLength * g.h) return false;
+  if (dot(cross(-to_a, to_b), g.sheet.normal[m]) >= 0) return false;  // a spike of the sheet, not a notch
+  if (n > 6 && is_exited(g, m) && (is_exited(g, a) || is_exited(g, b))) return false;
+  if (g.sheet.has_edge(a, b) || !g.sheet.add({Triangle{m, a, b}})) return false;
+  retire(g, m);
+  loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(i));
+  return true;
+}
+
+struct BridgeEnd {
+  std::size_t loop, place;
+  std::uint32_t first, second;  // directed front edge
+  Vec3 middle, outward;
+};
+
+BridgeEnd bridge_end(const Growth& g, std::size_t l, std::size_t i) {
+  const FrontLoop& loop = g.loops[l];
+  BridgeEnd e{l, i, loop[i], loop[(i + 1) % loop.size()], {}, {}};
+  const Vec3 p = g.sheet.position[e.first], q = g.sheet.position[e.second];
+  e.middle = 0.5 * (p + q);
+  e.outward = normalized(cross(q - p, g.sheet.normal[e.first] + g.sheet.normal[e.second]));
+  return e;
+}
+
+bool may_bridge(const Growth& g, const BridgeEnd& a, const BridgeEnd& b) {
+  const Vec3 d = b.middle - a.middle;
+  const Real length = norm(d);
+  if (!(length < kBridge * g.h) || dot(a.outward, d) <= 0.25 * length || dot(b.outward, d) >= -0.25 * length)
+    return false;
+  if (a.first == b.first || a.first == b.second || a.second == b.first || a.second == b.second) return false;
+  if (a.loop == b.loop) {
+    const std::size_t n = g.loops[a.loop].size(), apart = b.place > a.place ? b.place - a.place : a.place - b.place;
+    if (std::min(apart, n - apart) < kBridgeLoopDistance) return false;
+  }
+  // Opposite crack normals would make the sheet one-sided.
+  if (dot(g.sheet.normal[a.first], g.sheet.normal[b.first]) <= 0) return false;
+  const SheetMesh& s = g.sheet;
+  if (dot(s.position[a.second] - s.position[a.first], s.position[b.second] - s.position[b.first]) >= 0) return false;
+  if (s.has_edge(a.first, b.second) || s.has_edge(b.first, a.second) || s.has_edge(a.first, b.first)) return false;
+  return !(is_dead(g, a.first, a.second) && is_dead(g, b.first, b.second));
+}
+
+// Nodes from place `from` to place `to`, cyclic, both included.
+FrontLoop arc(const FrontLoop& loop, std::size_t from, std::size_t to) {
+  FrontLoop out;
+  for (std::size_t i = from % loop.size();; i = (i + 1) % loop.size()) {
+    out.push_back(loop[i]);
+    if (i == to % loop.size()) return out;
+  }
+}
+
+bool bridge(Growth& g, const BridgeEnd& a, const BridgeEnd& b) {
+  if (!g.sheet.add({Triangle{a.second, a.first, b.first}, Triangle{a.first, b.second, b.first}})) return false;
+  const FrontLoop first = g.loops[a.loop];
+  if (a.loop == b.loop) {
+    g.loops[a.loop] = arc(first, a.place + 1, b.place);
+    g.loops.push_back(arc(first, b.place + 1, a.place));
+    return true;
+  }
+  FrontLoop merged = arc(first, a.place + 1, a.place);
+  const FrontLoop other = arc(g.loops[b.loop], b.place + 1, b.place);
+  merged.insert(merged.end(), other.begin(), other.end());
+  g.loops[a.loop] = std::move(merged);
+  g.loops.erase(g.loops.begin() + static_cast<std::ptrdiff_t>(b.loop));
+  return true;
+}
+
+// The closest admissible pair of front edges is joined; one at a time, since loops change.
+bool bridge_nearest(Growth& g) {
+  std::vector<BridgeEnd> ends;
+  for (std::size_t l = 0; l < g.loops.size(); ++l)
+    for (std::size_t i = 0; i < g.loops[l].size(); ++i) ends.push_back(bridge_end(g, l, i));
+  struct Pair {
+    Real distance2;
+    std::size_t a, b;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    for (std::size_t j = i + 1; j < ends.size(); ++j)
+      if (distance2(ends[i].middle, ends[j].middle) < kBridge * kBridge * g.h * g.h && may_bridge(g, ends[i], ends[j]))
+        pairs.push_back({distance2(ends[i].middle, ends[j].middle), i, j});
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) { return x.distance2 < y.distance2; });
+  return std::any_of(pairs.begin(), pairs.end(), [&](const Pair& p) { return bridge(g, ends[p.a], ends[p.b]); });
+}
+
+bool all_dead(const Growth& g, const FrontLoop& loop) {
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    if (!is_dead(g, loop[i], loop[(i + 1) % loop.size()])) return false;
+  return true;
+}
+
+bool fill_small_loops(Growth& g) {
+  bool changed = false;
+  for (std::size_t l = 0; l < g.loops.size();) {
+    const FrontLoop loop = g.loops[l];
+    const bool fill = loop.size() == 3 && !all_dead(g, loop) && g.sheet.add({Triangle{loop[2], loop[1], loop[0]}});
+    if (!fill && loop.size() >= 3) {
+      ++l;
+      continue;
+    }
+    for (const std::uint32_t v : loop) retire(g, v);
+    g.loops.erase(g.loops.begin() + static_cast<std::ptrdiff_t>(l));
+    changed = true;
+  }
+  return changed;
+}
+
+}  // namespace
+
+bool merge_fronts(Growth& g) {
+  bool changed = false;
+  for (FrontLoop& loop : g.loops)
+    for (std::size_t i = 0; i < loop.size();)
+      if (close_ear(g, loop, i))
+        changed = true, i = i > 0 ? i - 1 : 0;
+      else
+        ++i;
+  constexpr int kMaxBridges = 64;  // a step; each is followed by ears that zip the fronts together
+  for (int k = 0; k < kMaxBridges && bridge_nearest(g); ++k) changed = true;
+  changed |= fill_small_loops(g);
+  return changed;
+}
+
+}  // namespace sherd

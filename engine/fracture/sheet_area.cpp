@@ -1,0 +1,72 @@
+#include "engine/fracture/sheet.h"
+
+namespace sherd {
+namespace {
+
+constexpr int kMaxDepth = 4;
+
+struct Corner {
+  Vec3 p;
+  bool inside;
+};
+
+Real triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return 0.5 * norm(cross(b - a, c - a));
+}
+
+// Parameters of the crossings on each edge; the number of crossings decides whether clipping by one line is right.
+struct Crossings {
+  std::size_t count = 0;
+  Real first = 0;
+};
+
+Crossings crossings(const TriangleBvh& body, const Vec3& a, const Vec3& b) {
+  std::vector<TriangleBvh::Hit> hits;
+  body.all_hits(a, b - a, 0, 1, hits);
+  return {hits.size(), hits.empty() ? 0 : hits.front().t};
+}
+
+Real area_inside(const TriangleBvh& body, const Corner& a, const Corner& b, const Corner& c, int depth) {
+  const Corner corner[3] = {a, b, c};
+  Crossings cross_[3];
+  bool simple = true;
+  int inside = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Corner &p = corner[k], &q = corner[(k + 1) % 3];
+    cross_[k] = crossings(body, p.p, q.p);
+    simple &= cross_[k].count == (p.inside != q.inside ? 1u : 0u);
+    inside += p.inside;
+  }
+  const Real whole = triangle_area(a.p, b.p, c.p);
+  if (simple && inside == 0) return 0;
+  if (simple && inside == 3) return whole;
+  if (simple && depth > 0) {
+    int lone = 0;  // the corner on its own side
+    while (corner[lone].inside != (inside == 1)) ++lone;
+    const Real s = cross_[lone].first, t = 1 - cross_[(lone + 2) % 3].first;
+    return inside == 1 ? s * t * whole : (1 - s * t) * whole;
+  }
+  if (depth >= kMaxDepth) return body.inside((a.p + b.p + c.p) / 3.0) ? whole : 0;
+  const auto middle = [&](const Corner& p, const Corner& q) {
+    const Vec3 m = 0.5 * (p.p + q.p);
+    return Corner{m, body.inside(m)};
+  };
+  const Corner ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+  return area_inside(body, a, ab, ca, depth + 1) + area_inside(body, ab, b, bc, depth + 1) +
+         area_inside(body, ca, bc, c, depth + 1) + area_inside(body, ab, bc, ca, depth + 1);
+}
+
+}  // namespace
+
+Real area_inside(const CrackSheet& sheet, const TriangleBvh& body) {
+  std::vector<std::uint8_t> inside(sheet.state.size());
+  for (std::size_t v = 0; v < inside.size(); ++v) inside[v] = body.inside(sheet.position[v]);
+  Real sum = 0;
+  for (const Triangle& n : sheet.triangles) {
+    const auto corner = [&](std::size_t k) { return Corner{sheet.position[n[k]], inside[n[k]] != 0}; };
+    sum += area_inside(body, corner(0), corner(1), corner(2), 0);
+  }
+  return sum;
+}
+
+}  // namespace sherd

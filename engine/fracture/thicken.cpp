@@ -1,0 +1,152 @@
+#include "engine/fracture/thicken.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "engine/mesh/intersections.h"
+
+namespace sherd {
+namespace {
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+Edge sorted(std::uint32_t a, std::uint32_t b) {
+  return a < b ? Edge{a, b} : Edge{b, a};
+}
+
+// The sheet refined so that no triangle and no interior edge has only single nodes: those would make two slab faces, or
+// four faces on one edge, coincide. A node is single when both sides of the slab share it (zero thickness).
+struct Refined {
+  Vec3Column position;
+  std::vector<std::uint8_t> single;
+  std::vector<Triangle> triangles;
+  std::map<Edge, int> edge_uses;  // undirected
+};
+
+void count_edges(Refined& r) {
+  r.edge_uses.clear();
+  for (const Triangle& n : r.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++r.edge_uses[sorted(n[k], n[(k + 1) % 3])];
+}
+
+std::uint32_t add_point(Refined& r, const Vec3& p) {
+  r.position.push_back(p), r.single.push_back(0);
+  return static_cast<std::uint32_t>(r.single.size() - 1);
+}
+
+// n with midpoints mid[k] on edges k -> k+1 (kNone: edge not split).
+void subdivide(Refined& r, const Triangle& n, const Triangle& mid, std::vector<Triangle>& out) {
+  std::vector<std::uint32_t> ring;
+  for (std::size_t k = 0; k < 3; ++k) {
+    ring.push_back(n[k]);
+    if (mid[k] != kNone) ring.push_back(mid[k]);
+  }
+  if (ring.size() == 3) {
+    if (!(r.single[n[0]] && r.single[n[1]] && r.single[n[2]])) {
+      out.push_back(n);
+      return;
+    }
+    const std::uint32_t c = add_point(r, (r.position[n[0]] + r.position[n[1]] + r.position[n[2]]) / 3.0);
+    for (std::size_t k = 0; k < 3; ++k) out.push_back({n[k], n[(k + 1) % 3], c});
+    return;
+  }
+  // A fan from the first midpoint: every triangle has it, so none is all single, and its diagonals are not all single.
+  std::size_t first = 0;
+  while (ring[first] == n[0] || ring[first] == n[1] || ring[first] == n[2]) ++first;
+  for (std::size_t k = 1; k + 1 < ring.size(); ++k)
+    out.push_back({ring[first], ring[(first + k) % ring.size()], ring[(first + k + 1) % ring.size()]});
+}
+
+Refined refine(const CrackSheet& sheet) {
+  Refined r;
+  r.position = sheet.position;
+  r.triangles = sheet.triangles;
+  r.single.assign(sheet.state.size(), 0);
+  count_edges(r);
+  for (const auto& [e, uses] : r.edge_uses)
+    if (uses == 1)
+      for (const std::uint32_t v : {e.first, e.second}) r.single[v] = sheet.state[v] != NodeState::kExited;
+  std::map<Edge, std::uint32_t> middle;
+  for (const auto& [e, uses] : r.edge_uses)
+    if (uses == 2 && r.single[e.first] && r.single[e.second])
+      middle[e] = add_point(r, 0.5 * (r.position[e.first] + r.position[e.second]));
+  std::vector<Triangle> triangles;
+  for (const Triangle& n : r.triangles) {
+    Triangle mid{kNone, kNone, kNone};
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const auto m = middle.find(sorted(n[k], n[(k + 1) % 3])); m != middle.end()) mid[k] = m->second;
+    subdivide(r, n, mid, triangles);
+  }
+  r.triangles = std::move(triangles);
+  count_edges(r);
+  return r;
+}
+
+SurfaceMesh offset(const Refined& r, Real thickness) {
+  const std::size_t n = r.position.size();
+  Vec3Column normal(n);
+  for (const Triangle& t : r.triangles) {
+    const Vec3 a = cross(r.position[t[1]] - r.position[t[0]], r.position[t[2]] - r.position[t[0]]);
+    for (const std::uint32_t v : t) normal.add(v, a);
+  }
+  SurfaceMesh slab;
+  std::vector<std::uint32_t> up(n), down(n);
+  for (std::size_t v = 0; v < n; ++v) {
+    const Vec3 half = r.single[v] ? Vec3{} : 0.5 * thickness * normalized(normal[v]);
+    up[v] = static_cast<std::uint32_t>(slab.vertices.size());
+    slab.vertices.push_back(r.position[v] + half);
+    down[v] = up[v];
+    if (r.single[v]) continue;
+    down[v] = up[v] + 1;
+    slab.vertices.push_back(r.position[v] - half);
+  }
+  for (const Triangle& t : r.triangles) {
+    slab.triangles.push_back({up[t[0]], up[t[1]], up[t[2]]});
+    slab.triangles.push_back({down[t[0]], down[t[2]], down[t[1]]});
+  }
+  for (const Triangle& t : r.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      if (r.edge_uses.at(sorted(a, b)) != 1) continue;
+      if (!r.single[a]) slab.triangles.push_back({up[a], down[a], down[b]});
+      if (!r.single[b]) slab.triangles.push_back({up[a], down[b], up[b]});
+    }
+  return slab;
+}
+
+}  // namespace
+
+std::optional<SurfaceMesh> thicken(const CrackSheet& sheet, Real thickness, std::int32_t crack_id,
+                                   std::string& reason) {
+  reason.clear();
+  if (!(thickness > 0) || !std::isfinite(thickness)) {
+    reason = fmt::format("thickness {} m is not positive", thickness);
+    return std::nullopt;
+  }
+  if (sheet.triangles.empty()) {
+    reason = "the sheet is empty";
+    return std::nullopt;
+  }
+  SurfaceMesh slab = offset(refine(sheet), thickness);
+  slab.faces.kind.assign(slab.triangles.size(), FaceKind::kCrack);
+  slab.faces.crack.assign(slab.triangles.size(), crack_id);
+  slab.faces.source.assign(slab.triangles.size(), -1);
+  for (const std::uint32_t twin : build_twins(slab))
+    if (twin == kNone) {
+      reason = "the slab is not closed: the sheet is not a manifold with border";
+      return std::nullopt;
+    }
+  if (!(signed_volume(slab) > 0)) {
+    reason = "the slab has no positive volume";
+    return std::nullopt;
+  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  if (count_self_intersections(slab, 1, &pairs) > 0) {
+    const Vec3 p = slab.centroid(pairs.front().first);
+    reason = fmt::format("the slab intersects itself near ({:.4g}, {:.4g}, {:.4g}) m", p.x, p.y, p.z);
+    return std::nullopt;
+  }
+  return slab;
+}
+
+}  // namespace sherd
