@@ -1,0 +1,20 @@
+// The face between the Krylov solver and whatever applies the boundary integral operator: dense now, a fast multipole
+// method later.
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "kernels/core/vec3.h"
+
+namespace sherd {
+
+class LinearOperator {
+ public:
+  virtual ~LinearOperator() = default;
+  virtual std::size_t size() const = 0;  // rows = columns
+  // y = A x, both of size(); same bits for any number of threads.
+  virtual void apply(std::span<const Real> x, std::span<Real> y) const = 0;
+};
+
+}  // namespace sherd

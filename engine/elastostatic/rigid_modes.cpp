@@ -1,0 +1,50 @@
+#include "engine/elastostatic/rigid_modes.h"
+
+#include <cmath>
+
+#include "kernels/core/parallel.h"
+
+namespace sherd {
+
+RigidModes::RigidModes(const Vec3Column& points, const std::vector<Real>& weight) : weight_(weight) {
+  Real total = 0;
+  for (const Real w : weight_) total += w;
+  for (Real& w : weight_) w /= total;
+  Vec3 centre;
+  for (std::size_t i = 0; i < points.size(); ++i) centre += points[i] * weight_[i];
+  for (std::size_t m = 0; m < 6; ++m) {
+    std::vector<Real>& mode = mode_[m];
+    mode.assign(3 * points.size(), 0);
+    Vec3 axis{};
+    axis[static_cast<int>(m % 3)] = 1;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3 v = m < 3 ? axis : cross(axis, points[i] - centre);
+      for (int k = 0; k < 3; ++k) mode[3 * i + static_cast<std::size_t>(k)] = v[k];
+    }
+    // Gram-Schmidt, twice for orthogonality to rounding
+    for (int pass = 0; pass < 2; ++pass) {
+      for (std::size_t j = 0; j < m; ++j) {
+        Real c = 0;
+        for (std::size_t i = 0; i < mode.size(); ++i) c += weight_[i / 3] * mode[i] * mode_[j][i];
+        for (std::size_t i = 0; i < mode.size(); ++i) mode[i] -= c * mode_[j][i];
+      }
+      Real n2 = 0;
+      for (std::size_t i = 0; i < mode.size(); ++i) n2 += weight_[i / 3] * mode[i] * mode[i];
+      for (Real& v : mode) v /= std::sqrt(n2);
+    }
+  }
+}
+
+std::array<Real, 6> RigidModes::coefficients(std::span<const Real> x) const {
+  std::array<Real, 6> c{};
+  for (std::size_t m = 0; m < 6; ++m)
+    c[m] = parallel_sum<Real>(x.size(), 8192, [&](std::size_t i) { return weight_[i / 3] * mode_[m][i] * x[i]; });
+  return c;
+}
+
+void RigidModes::add(std::span<Real> y, const std::array<Real, 6>& c, Real scale) const {
+  for (std::size_t m = 0; m < 6; ++m)
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] += scale * c[m] * mode_[m][i];
+}
+
+}  // namespace sherd

@@ -1,0 +1,80 @@
+#include "engine/elastostatic/solver.h"
+
+#include <fmt/format.h>
+
+#include "engine/elastostatic/dense_operator.h"
+
+namespace sherd {
+
+ElasticBody::ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const ElasticOptions& options)
+    : material_(material), options_(options), boundary_(mesh, options.quadrature), modes_(boundary_.mesh.vertices, boundary_.vertex_area) {
+  const std::size_t n = 3 * mesh.vertex_count(), bytes = n * n * (options.double_storage ? sizeof(double) : sizeof(float));
+  if (bytes > options.max_bytes) {
+    reason_ = fmt::format("{} triangles need a dense operator of {} MiB, more than the {} MiB allowed: raise edge_length",
+                          mesh.triangle_count(), bytes >> 20, options.max_bytes >> 20);
+    return;
+  }
+  if (options.double_storage)
+    build<double>();
+  else
+    build<float>();
+}
+
+template <class Scalar>
+void ElasticBody::build() {
+  auto dense = std::make_unique<DenseOperator<Scalar>>(boundary_, material_.nu);
+  inverse_blocks_.resize(boundary_.mesh.vertex_count());
+  for (std::size_t p = 0; p < inverse_blocks_.size(); ++p) {
+    const Mat3 block = dense->diagonal_block(p);
+    const Real d = determinant(block), scale = trace(transpose(block) * block);
+    inverse_blocks_[p] = std::abs(d) > 1e-6 * scale * std::sqrt(scale) ? inverse(block) : Mat3::identity();
+  }
+  operator_ = std::move(dense);
+}
+
+ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& particular) const {
+  ElasticSolution s;
+  if (!ready()) {
+    s.reason = reason_;
+    return s;
+  }
+  const std::size_t n = boundary_.mesh.vertex_count();
+  const Vec3Column rhs = load_potential(boundary_, load, particular, material_, options_.quadrature);
+  std::vector<Real> b(3 * n), x(3 * n, 0);
+  Real size2 = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    for (int k = 0; k < 3; ++k) {
+      b[3 * i + static_cast<std::size_t>(k)] = rhs[i][k];
+      size2 += rhs[i][k] * rhs[i][k];
+    }
+  if (!std::isfinite(size2)) {
+    s.reason = "the load is not finite";
+    return s;
+  }
+  const auto jacobi = [&](std::span<const Real> r, std::span<Real> z) {
+    for (std::size_t p = 0; p < n; ++p) {
+      const Vec3 v = inverse_blocks_[p] * Vec3{r[3 * p], r[3 * p + 1], r[3 * p + 2]};
+      z[3 * p] = v.x, z[3 * p + 1] = v.y, z[3 * p + 2] = v.z;
+    }
+  };
+  s.krylov = gmres(CompletedOperator(*operator_, modes_), jacobi, b, x, options_.krylov);
+  // The rigid part of the solution is arbitrary; its coefficient measures what did not balance.
+  const std::array<Real, 6> c = modes_.coefficients(x);
+  Real rigid2 = 0;
+  for (const Real v : c) rigid2 += v * v;
+  s.incompatibility = size2 > 0 ? CompletedOperator::kShift * std::sqrt(rigid2 * static_cast<Real>(n) / size2) : 0;
+  modes_.add(x, c, -1);
+  s.displacement.resize(n);
+  bool finite = true;
+  for (std::size_t i = 0; i < n; ++i) {
+    s.displacement.set(i, {x[3 * i], x[3 * i + 1], x[3 * i + 2]});
+    finite = finite && is_finite(s.displacement[i]);
+  }
+  s.ok = finite && s.krylov.status == KrylovStatus::kConverged;
+  if (!s.ok)
+    s.reason = fmt::format("the solver stopped after {} iterations at a relative residual of {:.2e} (asked for {:.1e})",
+                           s.krylov.iterations, s.krylov.residual, options_.krylov.tolerance);
+  return s;
+}
+
+}  // namespace sherd

@@ -1,0 +1,103 @@
+#include "engine/load/contact_load.h"
+
+#include <algorithm>
+
+#include "engine/load/hertz.h"
+#include "engine/load/patch.h"
+
+namespace sherd {
+namespace {
+
+// Panels' resultant force and moment about `origin`; exact, the traction is constant on each panel.
+void resultant(const TractionPanels& panels, const Vec3& origin, Vec3& force, Vec3& moment) {
+  force = moment = Vec3{};
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const auto& c = panels.corners[i];
+    const Vec3 f = panels.traction[i] * (0.5 * norm(cross(c[1] - c[0], c[2] - c[0])));
+    force += f;
+    moment += cross((c[0] + c[1] + c[2]) / 3.0 - origin, f);
+  }
+}
+
+}  // namespace
+
+Real curvature_radius(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh,
+                      const Vec3& point) {
+  const TriangleBvh::Closest c = bvh.closest(point);
+  const Vec3 n0 = normalized(mesh.area_normal2(c.face));
+  const Vec3 centre0 = mesh.centroid(c.face);
+  // Two rings of edge neighbours: for a sphere |n - n0| / |x - x0| = 1/R.
+  std::vector<std::uint32_t> faces{c.face};
+  std::size_t begin = 0;
+  for (int ring = 0; ring < 3; ++ring) {
+    const std::size_t end = faces.size();
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t e = twins[3 * faces[i] + k];
+        if (e != kNone && std::find(faces.begin(), faces.end(), e / 3) == faces.end()) faces.push_back(e / 3);
+      }
+    begin = end;
+  }
+  Real weighted = 0, total = 0, edge = 0;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const Vec3 n2 = mesh.area_normal2(faces[i]);
+    edge += std::sqrt(norm(n2));
+    if (i == 0) continue;
+    const Real d = distance(mesh.centroid(faces[i]), centre0), area = norm(n2);
+    if (d <= 0 || area <= 0) continue;
+    weighted += area * norm(normalized(n2) - n0) / d, total += area;
+  }
+  edge /= static_cast<Real>(faces.size());
+  const Real curvature = total > 0 ? weighted / total : 0, diagonal = bounding_box(mesh).diagonal();
+  return std::clamp(curvature > 0 ? 1 / curvature : diagonal, std::min(0.5 * edge, diagonal), diagonal);
+}
+
+BodyContact body_contact(const Body& body, const Body* other, const Contact& contact, Real radius_of_curvature,
+                         const LoadOptions& options) {
+  const Real modulus = other ? effective_modulus(body.material.young, body.material.poisson, other->material.young,
+                                                 other->material.poisson)
+                             : effective_modulus(body.material.young, body.material.poisson, 0, 0);
+  const bool heavy = other == nullptr || other->fixed;
+  const Real mass = heavy ? body.mass.mass : body.mass.mass * other->mass.mass / (body.mass.mass + other->mass.mass);
+  BodyContact c;
+  c.point = to_material(body, contact.point);
+  const bool first = contact.a == body.id;
+  const Vec3 impulse = first ? contact.impulse : -contact.impulse;
+  // A contact that only carries load closes with at most the speed one step of free fall adds (about g dt, 1 cm/s).
+  const Real resting_speed = 2 * 9.81 * options.time_step;
+  Real duration = options.duration;
+  if (duration <= 0)
+    duration = contact.approach_speed <= resting_speed
+                   ? options.time_step
+                   : std::max(hertz_duration(mass, radius_of_curvature, modulus, contact.approach_speed), options.min_duration);
+  c.duration = duration;
+  c.force = rotate(conjugate(body.pose.orientation), impulse) / duration;
+  const Real diagonal = bounding_box(*body.mesh).diagonal();
+  const Real least = options.min_patch_radius > 0 ? options.min_patch_radius : 0.02 * diagonal;
+  c.patch_radius = options.patch_radius > 0 ? options.patch_radius
+                                            : std::clamp(hertz_radius(norm(c.force), radius_of_curvature, modulus), least, 0.25 * diagonal);
+  return c;
+}
+
+Load make_load(const Body& body, std::span<const BodyContact> contacts, const std::vector<std::uint32_t>& twins,
+               const TriangleBvh& bvh, const Vec3& omega) {
+  Load load;
+  for (const BodyContact& c : contacts) {
+    load.patches.push_back(make_patch(*body.mesh, twins, bvh, c.point, c.patch_radius, c.force));
+    append_panels(*body.mesh, load.patches.back(), load.panels);
+  }
+  Vec3 force, moment;
+  resultant(load.panels, body.mass.centre, force, moment);
+  const Mat3& inertia = body.mass.inertia;
+  const Vec3 alpha = inverse(inertia) * (moment - cross(omega, inertia * omega));
+  const Mat3 spin = cross_matrix(omega);
+  load.body_force.origin = body.mass.centre;
+  load.body_force.constant = force * (-1 / body.mass.volume);
+  load.body_force.linear = (cross_matrix(alpha) + spin * spin) * -body.density;
+  // Resultants of the body force over the polyhedron: volume * constant, and the moment of the linear part through the inertia.
+  load.net_force = force + load.body_force.constant * body.mass.volume;
+  load.net_moment = moment - inertia * alpha - cross(omega, inertia * omega);
+  return load;
+}
+
+}  // namespace sherd

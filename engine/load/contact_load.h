@@ -1,0 +1,42 @@
+// Contact impulses to tractions (paper 6.2: f = impulse / contact duration), made self-equilibrated by inertia relief.
+#pragma once
+#include <span>
+
+#include "engine/contact/contact.h"
+#include "engine/load/load.h"
+#include "engine/mesh/bvh.h"
+
+namespace sherd {
+
+struct LoadOptions {
+  Real time_step = 1e-3;        // s
+  Real duration = 0;            // s; 0: Hertz
+  Real min_duration = 1e-3;     // s; lower bound of the Hertz time. The default is the time step: what the simulation resolves
+  Real patch_radius = 0;        // m; 0: Hertz
+  Real min_patch_radius = 0;    // m; 0: 2 % of the bounding-box diagonal
+};
+
+// A contact seen from one body, material space.
+struct BodyContact {
+  Vec3 point;           // m
+  Vec3 force;           // N, on this body
+  Real duration = 0;    // s
+  Real patch_radius = 0;  // m
+};
+
+// Duration and patch of a contact from the point of view of `body`; `other` is null for the ground (rigid, flat).
+// Slow contacts (the Hertz time grows like v^-1/5) never last longer than the step that carries their impulse needs: an
+// impulse of a resting contact is weight * time_step, so its duration is the time step.
+BodyContact body_contact(const Body& body, const Body* other, const Contact& contact, Real radius_of_curvature,
+                         const LoadOptions& options);
+// Radius of curvature of the surface around a point, m: from the spread of the normals of the faces near it; never below
+// half the local edge length nor above the bounding-box diagonal (a flat face).
+Real curvature_radius(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh, const Vec3& point);
+
+// The load of all contacts on one body. Inertia relief: b(x) = -rho [F/m + alpha x d + omega x (omega x d)], d = x - centre,
+// I alpha = moment - omega x (I omega); weight and its reaction enter through the contact forces, free fall is stress free.
+// `omega`: angular velocity in material axes, rad/s.
+Load make_load(const Body& body, std::span<const BodyContact> contacts, const std::vector<std::uint32_t>& twins,
+               const TriangleBvh& bvh, const Vec3& omega);
+
+}  // namespace sherd

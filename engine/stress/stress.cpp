@@ -1,0 +1,142 @@
+#include "engine/stress/stress.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "kernels/core/parallel.h"
+#include "kernels/fundamental/kelvin.h"
+#include "kernels/fundamental/laplace.h"
+#include "kernels/quadrature/gauss.h"
+
+namespace sherd {
+namespace {
+
+// Displacement gradient of a Kelvin layer with constant density on a panel, and A,k of the panel (gradient of int 1/l).
+struct LayerGradient {
+  Mat3 kelvin;
+  Vec3 inverse;
+};
+
+template <std::size_t N>
+LayerGradient gauss(const PanelFrame& f, const Vec3& x, const Vec3& q, const std::array<TrianglePoint, N>& rule, const Elastic& m) {
+  LayerGradient g;
+  for (const TrianglePoint& p : rule) {
+    const Vec3 r = x - (f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c);
+    const Real w = p.weight * f.area;
+    g.kelvin += kelvin::gradient(r, q * w, m);
+    g.inverse += laplace::single_layer_gradient(r) * (4 * std::numbers::pi * w);
+  }
+  return g;
+}
+
+LayerGradient closed_form(const PanelFrame& f, const Vec3& x, const Vec3& q, const Elastic& m) {
+  PanelGradients p;
+  integrate_panel_gradient(f, x, Side::kAway, p);
+  LayerGradient g;
+  g.inverse = p.inverse;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 column = (q * ((3 - 4 * m.nu) * p.inverse[k]) + p.dyad[k] * q) * m.kelvin();
+    for (int i = 0; i < 3; ++i) g.kelvin[i][k] = column[i];
+  }
+  return g;
+}
+
+LayerGradient layer_gradient(const PanelFrame& f, const Vec3& x, const Vec3& q, const Elastic& m, const QuadratureOptions& o) {
+  const Real d2 = distance2(x, f.centroid()) / f.longest2;
+  if (d2 > o.gauss7 * o.gauss7) return gauss(f, x, q, kGauss3, m);
+  if (d2 > o.closed_form * o.closed_form) return gauss(f, x, q, kGauss7, m);
+  return closed_form(f, x, q, m);
+}
+
+}  // namespace
+
+StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recovery, const TriangleBvh& bvh, const Load& load,
+                         const ParticularSolution& particular, const ElasticSolution& solution)
+    : body_(body), recovery_(recovery), bvh_(bvh), particular_(particular), displacement_(solution.displacement),
+      load_traction_(load.panels.traction) {
+  const Boundary& b = body.boundary();
+  const std::size_t triangles = b.panels.size();
+  density_.resize(triangles), guenter_.resize(triangles), gradient_.resize(triangles);
+  parallel_for(triangles, 256, [&](std::size_t t) {
+    const PanelFrame& f = b.panels[t];
+    Mat3 g;  // g[i][k] = d u_i / d x_k
+    for (int a = 0; a < 3; ++a)
+      g += outer(solution.displacement[b.mesh.triangles[t][static_cast<std::size_t>(a)]], f.shape_gradient(a));
+    const Vec3 mu = transpose(g) * f.normal - f.normal * trace(g);  // (M u)_i = n_j d_i u_j - n_i d_j u_j
+    Vec3 traction = load.face_traction.empty() ? Vec3{} : load.face_traction[t];
+    if (!particular_.zero())
+      for (const TrianglePoint& p : kGauss3)
+        traction -= particular_.stress(f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c) * f.normal * p.weight;
+    gradient_[t] = g;
+    guenter_.set(t, mu);
+    density_.set(t, traction - mu * (2 * body.material().mu));
+  });
+  for (const auto& c : load.panels.corners) load_panels_.push_back(make_panel(c[0], c[1], c[2]));
+  for (std::size_t v = 0; v < displacement_.size(); ++v) displacement_.add(v, particular_.displacement(b.mesh.vertices[v]));
+  Vec3Column traction(recovery.corners().size());
+  for (std::size_t c = 0; c < traction.size(); ++c) {
+    const SurfaceCorner& corner = recovery.corners()[c];
+    Vec3 sum;
+    for (const std::uint32_t f : corner.faces) sum += traction_at(load, b.mesh.vertices[corner.vertex], f);
+    traction.set(c, sum / static_cast<Real>(corner.faces.size()));
+  }
+  corner_stress_ = recovery.stress(displacement_, traction, body.material());
+  worst_corner_.assign(b.mesh.vertex_count(), kNone);
+  std::vector<Real> worst(b.mesh.vertex_count(), 0);
+  for (std::uint32_t c = 0; c < corner_stress_.size(); ++c) {
+    const std::uint32_t v = recovery.corners()[c].vertex;
+    const Real s = eigen_symmetric(corner_stress_[c]).value[0];
+    if (worst_corner_[v] == kNone || s > worst[v]) worst_corner_[v] = c, worst[v] = s;
+  }
+}
+
+Sym3 StressState::interior(const Vec3& x) const {
+  const Boundary& b = body_.boundary();
+  const Elastic& m = body_.material();
+  const QuadratureOptions& o = body_.options().quadrature;
+  Mat3 g;
+  for (std::size_t t = 0; t < b.panels.size(); ++t) {
+    const PanelFrame& f = b.panels[t];
+    const LayerGradient l = layer_gradient(f, x, density_[t], m, o);
+    const Mat3& s = gradient_[t];
+    g += l.kelvin + (outer(guenter_[t], l.inverse) + s * dot(l.inverse, f.normal) - outer(s * l.inverse, f.normal)) *
+                        (1 / (4 * std::numbers::pi));
+  }
+  for (std::size_t i = 0; i < load_panels_.size(); ++i) g += layer_gradient(load_panels_[i], x, load_traction_[i], m, o).kelvin;
+  return kelvin::hooke(g, m) + particular_.stress(x);
+}
+
+Sym3 StressState::on_face(std::uint32_t face, const Vec3& x) const {
+  const PanelFrame& f = body_.boundary().panels[face];
+  Sym3 s;
+  Real total = 0;
+  for (int a = 0; a < 3; ++a) {
+    const Real w = std::clamp(1.0 + dot(f.shape_gradient(a), x - f.vertex[a]), 0.0, 1.0);
+    s += corner_stress_[recovery_.corner_of(face, a)] * w;
+    total += w;
+  }
+  return s * (1 / total);
+}
+
+Sym3 StressState::blended(const Vec3& x) const {
+  const TriangleBvh::Closest c = bvh_.closest(x);
+  const PanelFrame& f = body_.boundary().panels[c.face];
+  const Real reach = 0.25 * std::sqrt(f.area * 4 / std::numbers::sqrt3), depth = std::sqrt(c.distance2);
+  const bool inside = bvh_.inside(x);
+  if (inside && depth >= reach) return interior(x);
+  const Sym3 surface = on_face(c.face, c.point);
+  if (!inside) return surface;
+  const Vec3 inward = depth > 1e-3 * reach ? (x - c.point) / depth : -f.normal;
+  const Vec3 below = c.point + inward * reach;
+  // In a wall thinner than the reach the point below may leave it: the surface value is all there is.
+  if (!bvh_.inside(below)) return surface;
+  const Real w = depth / reach;
+  return surface * (1 - w) + interior(below) * w;
+}
+
+void StressState::evaluate(const Vec3Column& points, std::vector<Sym3>& out) const {
+  out.resize(points.size());
+  parallel_for(points.size(), 1, [&](std::size_t i) { out[i] = blended(points[i]); });
+}
+
+}  // namespace sherd

@@ -1,0 +1,47 @@
+// The stress stage: from a solved load to stress at surface vertices and at any point inside (paper 4.3, last paragraph).
+#pragma once
+#include "engine/elastostatic/solver.h"
+#include "engine/mesh/bvh.h"
+#include "engine/stress/recovery.h"
+
+namespace sherd {
+
+// Stress of one solution; keeps references to the body, recovery and bvh, which must outlive it.
+class StressState {
+ public:
+  StressState(const ElasticBody& body, const SurfaceRecovery& recovery, const TriangleBvh& bvh, const Load& load,
+              const ParticularSolution& particular, const ElasticSolution& solution);
+
+  // Total stress per surface corner (SurfaceRecovery::corners()), Pa.
+  const std::vector<Sym3>& corner_stress() const { return corner_stress_; }
+  // Per vertex: the corner with the largest principal stress.
+  std::uint32_t worst_corner(std::uint32_t vertex) const { return worst_corner_[vertex]; }
+  // Total displacement per vertex up to a rigid motion, m.
+  const Vec3Column& displacement() const { return displacement_; }
+
+  // Total stress at points of the closed solid: Somigliana's gradient below a quarter of the local edge length, blended
+  // linearly into the surface value above. Points outside get the value of the closest surface point. Parallel.
+  void evaluate(const Vec3Column& points, std::vector<Sym3>& out) const;
+  // Somigliana's gradient alone: any point inside, no blending; outside it gives the particular solution alone.
+  Sym3 interior(const Vec3& x) const;
+  // Linear interpolation of the corner stresses on a face.
+  Sym3 on_face(std::uint32_t face, const Vec3& x) const;
+
+ private:
+  Sym3 blended(const Vec3& x) const;
+
+  const ElasticBody& body_;
+  const SurfaceRecovery& recovery_;
+  const TriangleBvh& bvh_;
+  ParticularSolution particular_;
+  Vec3Column displacement_;
+  std::vector<Sym3> corner_stress_;
+  std::vector<std::uint32_t> worst_corner_;
+  // Per triangle: density of the Kelvin layer, M u, surface gradient of the homogeneous displacement.
+  Vec3Column density_, guenter_;
+  std::vector<Mat3> gradient_;
+  std::vector<PanelFrame> load_panels_;
+  Vec3Column load_traction_;
+};
+
+}  // namespace sherd
