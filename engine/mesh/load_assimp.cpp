@@ -1,0 +1,71 @@
+// STL, glTF and 3DS through assimp; no other file includes it.
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+
+#include "engine/mesh/load_raw.h"
+#include "kernels/core/error.h"
+
+namespace sherd {
+namespace {
+
+struct Collector {
+  const aiScene& scene;
+  const std::string& path;
+  SurfaceMesh mesh;
+  std::size_t other_faces = 0;
+
+  void add(const aiNode& node, const aiMatrix4x4& parent, int depth) {
+    if (depth > 1000)
+      throw InputError(fmt::format("{}: its nodes are nested deeper than 1000; flatten the scene", path));
+    const aiMatrix4x4 m = parent * node.mTransformation;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) add(*scene.mMeshes[node.mMeshes[i]], m, node.mName.C_Str());
+    for (unsigned i = 0; i < node.mNumChildren; ++i) add(*node.mChildren[i], m, depth + 1);
+  }
+
+  void add(const aiMesh& part, const aiMatrix4x4& m, const char* node) {
+    const auto offset = static_cast<std::uint32_t>(mesh.vertex_count());
+    const Vec3 x{m.a1, m.b1, m.c1}, y{m.a2, m.b2, m.c2}, z{m.a3, m.b3, m.c3}, o{m.a4, m.b4, m.c4};
+    const bool mirrored = dot(x, cross(y, z)) < 0;
+    for (unsigned i = 0; i < part.mNumVertices; ++i) {
+      const aiVector3D& v = part.mVertices[i];
+      const Vec3 p = static_cast<Real>(v.x) * x + static_cast<Real>(v.y) * y + static_cast<Real>(v.z) * z + o;
+      if (!is_finite(p))
+        throw InputError(
+            fmt::format("{}: vertex {} of mesh '{}' in node '{}' has a coordinate that is not finite; export the "
+                        "file again",
+                        path, i, part.mName.C_Str(), node));
+      mesh.vertices.push_back(p);
+    }
+    for (unsigned i = 0; i < part.mNumFaces; ++i) {
+      const aiFace& f = part.mFaces[i];
+      if (f.mNumIndices != 3) {
+        ++other_faces;
+        continue;
+      }
+      const unsigned a = f.mIndices[0], b = f.mIndices[mirrored ? 2 : 1], c = f.mIndices[mirrored ? 1 : 2];
+      if (a >= part.mNumVertices || b >= part.mNumVertices || c >= part.mNumVertices)
+        throw InputError(fmt::format("{}: face {} of mesh '{}' has a vertex index out of range; export the file again",
+                                     path, i, part.mName.C_Str()));
+      mesh.add_triangle(offset + a, offset + b, offset + c);
+    }
+  }
+};
+
+}  // namespace
+
+SurfaceMesh read_assimp(const std::string& path, std::vector<std::string>& messages) {
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    throw InputError(fmt::format("{}: cannot be read ({}); export the file again", path, importer.GetErrorString()));
+  if ((scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0)
+    throw InputError(fmt::format("{}: the file is incomplete; export it again", path));
+  Collector collector{*scene, path, {}, 0};
+  collector.add(*scene->mRootNode, aiMatrix4x4(), 0);
+  if (collector.other_faces > 0) messages.push_back(fmt::format("left out {} points and lines", collector.other_faces));
+  return std::move(collector.mesh);
+}
+
+}  // namespace sherd
