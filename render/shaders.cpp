@@ -54,7 +54,8 @@ float sunlight(vec3 p, vec3 n) {
     if (depth < reference(s.z, slope, d) - constant - abs(slope.x + slope.y) * 0.5 * u_shadow_texel)
       blocker += depth, blockers += 1.0;
   }
-  if (blockers == 0.0) return 1.0;
+  // A thin caster can slip between the taps.
+  if (blockers == 0.0) return texture(u_shadow, vec3(s.xy, reference(s.z, slope, vec2(0.0)) - constant));
   float gap = max(s.z - blocker / blockers, 0.0) * u_sun_depth;
   float radius = clamp(u_sun_tangent * gap / u_sun_width, 1.6 * u_shadow_texel, reach);
   float lit = 0.0;
@@ -246,7 +247,8 @@ void main() {
   vec3 light = kKey * sun + opened * (hemisphere + fill);
 
   vec3 h = normalize(v + u_sun);
-  float facing = max(dot(n, v), 0.0), fresnel = 0.04 + 0.96 * pow(1.0 - max(dot(h, v), 0.0), 5.0);
+  // Clamped above as well: rounding makes a cosine exceed 1, and pow of a negative number is undefined.
+  float facing = clamp(dot(n, v), 0.0, 1.0), fresnel = 0.04 + 0.96 * pow(1.0 - clamp(dot(h, v), 0.0, 1.0), 5.0);
   float rim = pow(1.0 - facing, 4.0);
   vec3 gloss = u_gloss * (kKey * (sun * fresnel * 9.0 * pow(max(dot(n, h), 0.0), 48.0)) + 0.12 * rim * open * above);
   vec3 colour = u_colour * light + gloss;
