@@ -22,12 +22,12 @@ Real box_distance2(const Box& b, const Vec3& p) {
 // Slab test widened by a few rounding errors, so that a ray along a box face is never lost.
 bool ray_hits_box(const Box& b, const Vec3& o, const Vec3& inverse, Real t0, Real t1) {
   for (int k = 0; k < 3; ++k) {
-    Real a = (b.low[k] - o[k]) * inverse[k], c = (b.high[k] - o[k]) * inverse[k];
-    if (a > c) std::swap(a, c);
-    if (std::isnan(a) || std::isnan(c)) {
+    if (std::isinf(inverse[k])) {  // parallel to the slab
       if (o[k] < b.low[k] || o[k] > b.high[k]) return false;
       continue;
     }
+    Real a = (b.low[k] - o[k]) * inverse[k], c = (b.high[k] - o[k]) * inverse[k];
+    if (a > c) std::swap(a, c);
     const Real slack = 1e-14 * (std::abs(a) + std::abs(c));
     t0 = std::max(t0, a - slack), t1 = std::min(t1, c + slack);
   }
