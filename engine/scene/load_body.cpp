@@ -130,6 +130,8 @@ MeshSpec read_mesh(TableReader& body, const TomlValue& value, const std::filesys
   fit("scale", MeshFit::kScale, {1e-9, 1e9});
   fit("fit_height", MeshFit::kHeight, kLength);
   fit("fit_size", MeshFit::kSize, kLength);
+  constexpr std::array<std::string_view, 2> kUp{"y", "z"};
+  mesh.up = body.choice("up", kUp, 0) == 0 ? UpAxis::kY : UpAxis::kZ;
   mesh.max_hole = body.number("max_hole", {0, 1e4, "m"}, 0);
   return mesh;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/material/material.h"
+#include "engine/mesh/load.h"
 #include "engine/mesh/surface_mesh.h"
 
 namespace sherd {
@@ -46,20 +47,23 @@ using ShapeSpec = std::variant<BoxShape, SphereShape, HollowSphereShape, PlateSh
 // How large the mesh of a file becomes; the factor is uniform.
 enum class MeshFit {
   kScale,   // multiply coordinates by `amount`
-  kHeight,  // make the extent along the file's y axis `amount` metres
+  kHeight,  // make the extent along y `amount` metres
   kSize,    // make the largest extent `amount` metres
 };
 struct MeshSpec {
   std::filesystem::path file;  // absolute, or relative to the working directory; exists
   MeshFit fit = MeshFit::kScale;
   Real amount = 1;
-  Real max_hole = 0;  // holes up to this diameter (m, after scaling) are filled; 0 asks for 5 % of the diagonal
+  UpAxis up = UpAxis::kY;  // of the file; turned to y before anything else
+  Real max_hole = 0;       // holes up to this diameter (m, after scaling) are filled; 0 asks for 5 % of the diagonal
 };
 
 enum class Anchor {
   kCentreOfMass,  // `position` is where the centre of mass goes
   kBase,  // `position` is where the lowest point goes (y), under the bounding box's centre (x, z), after rotation
 };
+
+inline constexpr Real kDefaultEdge = 1.0 / 40;  // edge length where none is given, of the bounding-box diagonal
 
 struct SceneBody {
   std::string name;  // unique; letters, digits, '_' and '-', so that it can name files
@@ -142,6 +146,12 @@ struct Scene {
 // Throws InputError naming every problem found, one a line and in file order, each as
 // "file:line:column: key: value X not allowed; allowed range Y". Creates nothing; mesh files are only looked for.
 Scene load_scene(const std::filesystem::path& file);
+
+// The body's mesh about its own origin, before remeshing: generated, or loaded, scaled and repaired. `messages` gets a
+// sentence for everything loading and repair changed. Throws InputError naming the file for what cannot be repaired.
+SurfaceMesh scene_mesh(const SceneBody& body, std::vector<std::string>& messages);
+// The body's edge_length, or the default that stands for 0, for the mesh of scene_mesh(); m.
+Real scene_edge_length(const SceneBody& body, const SurfaceMesh& mesh);
 
 // The closed surface of a generated solid about its own origin, with the given target edge length (m, > 0).
 SurfaceMesh make_shape(const ShapeSpec& shape, Real edge_length);

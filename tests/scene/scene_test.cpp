@@ -40,6 +40,7 @@ frame_rate = 25
 name = "pot"
 mesh = "pot.obj"
 fit_height = 0.3
+up = "z"
 max_hole = 0.01
 edge_length = 0.008
 anchor = "base"
@@ -98,6 +99,7 @@ material_view = "table"
   EXPECT_EQ(mesh.file, folder_ / "pot.obj");
   EXPECT_EQ(mesh.fit, MeshFit::kHeight);
   EXPECT_EQ(mesh.amount, 0.3);
+  EXPECT_EQ(mesh.up, UpAxis::kZ);
   EXPECT_EQ(mesh.max_hole, 0.01);
   EXPECT_EQ(pot.edge_length, 0.008);
   EXPECT_EQ(pot.anchor, Anchor::kBase);
@@ -193,6 +195,33 @@ TEST_F(SceneValues, EveryShapeGivesAClosedSolidAboutAsLargeAsItSays) {
     EXPECT_GT(signed_volume(mesh), 0) << text;
     // Polyhedra inscribed in round bodies are smaller by up to (edge / radius)^2, a few percent here.
     EXPECT_NEAR(bounding_box(mesh).diagonal(), diagonal, 0.05 * diagonal) << text;
+  }
+}
+
+TEST_F(SceneValues, MeshFilesAreFittedToTheSizeAsked) {
+  // A tetrahedron 2 x 4 x 1 units large, z up.
+  write("tet.obj", "v 0 0 0\nv 2 0 0\nv 0 4 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const auto extent = [&](const std::string& fit) {
+    std::vector<std::string> messages;
+    const Scene scene = load("[[body]]\nname = \"a\"\nmesh = \"tet.obj\"\nup = \"z\"\n" + fit + "\n");
+    const Box box = bounding_box(scene_mesh(scene.bodies[0], messages));
+    return box.high - box.low;
+  };
+  // Turned to y up the extents are (2, 1, 4); the scale is one rounded division and product.
+  EXPECT_LT(distance(extent("scale = 0.5"), {1, 0.5, 2}), 1e-15);
+  EXPECT_LT(distance(extent("fit_height = 3"), {6, 3, 12}), 1e-14);
+  EXPECT_LT(distance(extent("fit_size = 1"), {0.5, 0.25, 1}), 1e-15);
+}
+
+TEST_F(SceneValues, BadMeshFilesAreRefusedByName) {
+  write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
+  const Scene scene = load("[[body]]\nname = \"a\"\nmesh = \"flat.obj\"\nfit_height = 1\n");
+  std::vector<std::string> messages;
+  try {
+    scene_mesh(scene.bodies[0], messages);
+    FAIL() << "a single triangle is no solid";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("flat.obj"), std::string::npos) << error.what();
   }
 }
 

@@ -1,0 +1,44 @@
+#include <algorithm>
+
+#include "engine/mesh/repair.h"
+#include "engine/scene/scene.h"
+#include "kernels/core/error.h"
+
+namespace sherd {
+namespace {
+
+Real fit_scale(const MeshSpec& spec, const SurfaceMesh& mesh) {
+  if (spec.fit == MeshFit::kScale) return spec.amount;
+  const Box box = bounding_box(mesh);
+  const Vec3 extent = box.high - box.low;
+  const bool height = spec.fit == MeshFit::kHeight;
+  const Real length = height ? extent.y : std::max({extent.x, extent.y, extent.z});
+  if (!(length > 0))
+    throw InputError(fmt::format("{}: has no {} to fit to {} m; use scale, or another up axis", spec.file.string(),
+                                 height ? "height" : "size", spec.amount));
+  return spec.amount / length;
+}
+
+SurfaceMesh file_mesh(const MeshSpec& spec, std::vector<std::string>& messages) {
+  LoadLog log;
+  SurfaceMesh mesh = load_mesh(spec.file.string(), {.scale = 1, .up = spec.up}, log);
+  messages.insert(messages.end(), log.messages.begin(), log.messages.end());
+  const Real scale = fit_scale(spec, mesh);
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) mesh.vertices.set(i, mesh.vertices[i] * scale);
+  repair_mesh(mesh, {.name = spec.file.string(), .max_hole_diameter = spec.max_hole}, messages);
+  return mesh;
+}
+
+}  // namespace
+
+SurfaceMesh scene_mesh(const SceneBody& body, std::vector<std::string>& messages) {
+  if (const auto* file = std::get_if<MeshSpec>(&body.source)) return file_mesh(*file, messages);
+  const ShapeSpec& shape = std::get<ShapeSpec>(body.source);
+  return make_shape(shape, body.edge_length > 0 ? body.edge_length : kDefaultEdge * shape_diagonal(shape));
+}
+
+Real scene_edge_length(const SceneBody& body, const SurfaceMesh& mesh) {
+  return body.edge_length > 0 ? body.edge_length : kDefaultEdge * bounding_box(mesh).diagonal();
+}
+
+}  // namespace sherd
