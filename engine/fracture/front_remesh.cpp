@@ -8,7 +8,8 @@ namespace sherd {
 namespace {
 
 constexpr Real kSplit = 1.4, kCollapse = 0.45, kCover = 0.05;  // of h
-constexpr Real kSmooth = 0.2;
+constexpr Real kSmooth = 0.2;        // weight of the crack line smoothing within the crack plane
+constexpr Real kSmoothAcross = 0.5;  // and across it: waves of 8 h lose 15 % a step, of 40 h less than 1 %
 constexpr int kPasses = 2;
 
 // Replaces the border triangle at a -> b by two with a node at `at` between them; kNone when it does not fit.
@@ -91,7 +92,8 @@ void smooth(Growth& g, const FrontLoop& loop) {
     if (g.sheet.state[v] != NodeState::kActive) continue;
     const Vec3 a = g.sheet.position[loop[(i + loop.size() - 1) % loop.size()]], p = g.sheet.position[v],
                b = g.sheet.position[loop[(i + 1) % loop.size()]];
-    g.sheet.move(v, p + kSmooth * (0.5 * (a + b) - p));
+    const Vec3 way = 0.5 * (a + b) - p, n = g.sheet.normal[v];
+    g.sheet.move(v, p + kSmooth * way + (kSmoothAcross - kSmooth) * dot(way, n) * n);
   }
 }
 

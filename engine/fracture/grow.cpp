@@ -133,10 +133,10 @@ GrowthResult climb_ladder(const TriangleBvh& body, const CrackField& field, cons
     const int limit = step_limit(body, options, h);
     result = finish(g, limit, propagate(g, limit));
     result.ladder_level = level;
-    if (result.outcome != GrowthOutcome::kFailed) return result;
     if (level == 0) first_reason = result.reason;
+    result.reason = first_reason;
+    if (result.outcome != GrowthOutcome::kFailed) break;
   }
-  result.reason = first_reason;
   return result;
 }
 

@@ -33,7 +33,7 @@ struct GrowthResult {
   int ladder_level = 0;  // 0: the true field; 1..4: blended towards the seed's plane (O8)
   int steps = 0;
   Real area = 0;         // of the sheet part inside the body, m^2
-  std::string reason;    // of a rejection or failure
+  std::string reason;    // of a rejection or failure; with ladder_level > 0 also why the true field failed
 };
 
 // `body` must describe a valid mesh. Never throws for geometric trouble: the outcome says what happened. Deterministic.

@@ -1,0 +1,143 @@
+// Synthetic stress fields and bodies for the crack tests.
+#pragma once
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "engine/fracture/grow.h"
+#include "engine/fracture/thicken.h"
+#include "engine/mesh/shapes.h"
+#include "kernels/core/random.h"
+
+namespace sherd {
+
+// A field given by a function of position. `sign` -1 flips every eigenvector.
+class FunctionField : public CrackField {
+ public:
+  using Function = std::function<PrincipalStress(const Vec3&)>;
+  explicit FunctionField(Function f, Real sign = 1) : f_(std::move(f)), sign_(sign) {}
+  void principal_stress(const Vec3Column& points, std::vector<PrincipalStress>& out) const override {
+    out.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      out[i] = f_(points[i]);
+      out[i].direction = sign_ * normalized(out[i].direction);
+      ++evaluations;
+    }
+    ++batches;
+  }
+  mutable std::size_t evaluations = 0, batches = 0;
+
+ private:
+  Function f_;
+  Real sign_;
+};
+
+inline FunctionField::Function constant_direction(const Vec3& e) {
+  return [e](const Vec3&) { return PrincipalStress{1, e}; };
+}
+// e turns about `axis` by `rate` radians per metre along `along`.
+inline FunctionField::Function rotating_direction(const Vec3& e, const Vec3& axis, const Vec3& along, Real rate) {
+  return [=](const Vec3& p) {
+    const Real a = rate * dot(p, along);
+    const Vec3 k = normalized(axis);
+    return PrincipalStress{1, std::cos(a) * e + std::sin(a) * cross(k, e) + (1 - std::cos(a)) * dot(k, e) * k};
+  };
+}
+// e plus three fixed plane waves of the given amplitude (each component) and wavelength (m).
+inline FunctionField::Function noisy_direction(const Vec3& e, Real amplitude, Real wavelength, std::uint64_t seed) {
+  Random random(seed);
+  struct Wave {
+    Vec3 k, a;
+    Real phase;
+  };
+  std::vector<Wave> waves;
+  for (int i = 0; i < 3; ++i) {
+    const auto unit = [&] {
+      return normalized(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+    };
+    waves.push_back({2 * M_PI / wavelength * unit(), amplitude * unit(), random.uniform(0, 2 * M_PI)});
+  }
+  return [e, waves](const Vec3& p) {
+    Vec3 sum = e;
+    for (const Wave& w : waves) sum += std::sin(dot(w.k, p) + w.phase) * w.a;
+    return PrincipalStress{1, sum};
+  };
+}
+
+struct Specimen {
+  explicit Specimen(SurfaceMesh m) : mesh(std::move(m)), bvh(mesh), h(mean_edge_length(mesh)) {
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      const Vec3 n = mesh.area_normal2(t);
+      if (normals.empty()) normals.resize(mesh.vertex_count());
+      for (const std::uint32_t v : mesh.triangles[t]) normals.add(v, n);
+    }
+  }
+  CrackSeed seed_at(std::uint32_t v, const CrackField& field) const {
+    Vec3Column p;
+    p.push_back(mesh.vertices[v]);
+    std::vector<PrincipalStress> s;
+    field.principal_stress(p, s);
+    return {mesh.vertices[v], normalized(normals[v]), s[0], v};
+  }
+  std::uint32_t nearest_vertex(const Vec3& p) const {
+    std::uint32_t best = 0;
+    for (std::uint32_t v = 1; v < mesh.vertex_count(); ++v)
+      if (distance2(mesh.vertices[v], p) < distance2(mesh.vertices[best], p)) best = v;
+    return best;
+  }
+  GrowthOptions options() const {
+    GrowthOptions o;
+    o.edge_length = h;
+    o.propagation_strength = 0.5;
+    o.thickness = 1e-3 * bounding_box(mesh).diagonal();
+    return o;
+  }
+  SurfaceMesh mesh;
+  TriangleBvh bvh;
+  Real h;
+  Vec3Column normals;
+};
+
+// Area of the whole sheet, m^2.
+inline Real sheet_area(const CrackSheet& s) {
+  Real sum = 0;
+  for (const Triangle& n : s.triangles)
+    sum += 0.5 * norm(cross(s.position[n[1]] - s.position[n[0]], s.position[n[2]] - s.position[n[0]]));
+  return sum;
+}
+
+// S3, S5: what the outcome claims about the border. Returns the first violation, or an empty string.
+inline std::string check_border(const CrackSheet& s, const TriangleBvh& body, GrowthOutcome outcome) {
+  std::vector<TriangleBvh::Hit> hits;
+  bool complete = true, arrested = false;
+  for (const auto& loop : border_loops(s))
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const std::uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
+      if (s.state[a] == NodeState::kInterior) return "a border node is interior";
+      if (s.state[a] == NodeState::kExited && body.inside(s.position[a])) return "an exited node lies inside";
+      if (s.state[a] == NodeState::kArrested) arrested = true;
+      body.all_hits(s.position[a], s.position[b] - s.position[a], 0, 1, hits);
+      complete &= s.state[a] == NodeState::kExited && s.state[b] == NodeState::kExited && hits.empty();
+    }
+  if (complete != (outcome == GrowthOutcome::kComplete)) return "completeness is not what the border shows";
+  if (outcome == GrowthOutcome::kArrested && !arrested) return "arrested without an arrested node";
+  return {};
+}
+
+// Every law a grown sheet and its slab obey.
+inline std::string check_grown(const GrowthResult& r, const Specimen& body, Real thickness) {
+  if (r.outcome != GrowthOutcome::kComplete && r.outcome != GrowthOutcome::kArrested)
+    return r.reason.empty() ? "failed without a reason" : "";
+  if (std::string bad = check_sheet(r.sheet); !bad.empty()) return bad;
+  if (std::string bad = check_border(r.sheet, body.bvh, r.outcome); !bad.empty()) return bad;
+  std::string reason;
+  const auto slab = thicken(r.sheet, thickness, 7, reason);
+  if (!slab) return reason;
+  const Real volume = signed_volume(*slab), full = thickness * sheet_area(r.sheet);
+  // A complete slab has full thickness everywhere: its volume is t x area but for the bends (order t x curvature).
+  if (r.outcome == GrowthOutcome::kComplete && std::abs(volume - full) > 0.02 * full) return "slab volume is off";
+  if (!(volume > 0 && volume < 1.02 * full)) return "slab volume is out of range";
+  return {};
+}
+
+}  // namespace sherd
