@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "engine/mesh/load_raw.h"
 #include "engine/mesh/validate_edges.h"

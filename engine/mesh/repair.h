@@ -15,14 +15,14 @@ struct RepairOptions {
 };
 
 // In place, in this order: vertices in no triangle and triangles with a repeated vertex are dropped; vertices with
-// several fans of triangles are split, one vertex per fan, drawn apart by a thousandth of the fan's size; triangles are
-// oriented alike; holes up to the limit are closed; needles and triangles without area are removed by edge flips and
-// collapses; shells are turned outward, cavities inward; up to a few intersecting triangles are smoothed apart. Small
-// separate pieces are kept and mentioned. `messages` gets one sentence for everything done, with counts; nothing for a
-// valid mesh. New triangles have faces.source = -1. The result satisfies is_valid(). InputError, with counts and
-// places, for what cannot be repaired: indices out of range, coordinates not finite, edges with more than two
-// triangles, a surface that cannot be oriented, holes beyond the limit, triangles that intersect. `mesh` is then left
-// half repaired.
+// several fans of triangles are split, one vertex per fan, all but one drawn into their fan by a thousandth of its
+// size; triangles are oriented alike; holes up to the limit are closed; needles and triangles without area are removed
+// by edge flips and collapses; shells are turned outward, cavities inward; intersections of at most one triangle in 500
+// are smoothed apart. Small separate pieces are kept and mentioned. `messages` gets one sentence for everything done,
+// with counts; nothing for a valid mesh. New triangles have faces.source = -1. The result satisfies is_valid().
+// InputError, with counts and places, for what cannot be repaired: indices out of range, coordinates not finite, edges
+// with more than two triangles, a surface that cannot be oriented, holes beyond the limit, triangles that intersect.
+// `mesh` is then left half repaired.
 void repair_mesh(SurfaceMesh& mesh, const RepairOptions& options, std::vector<std::string>& messages);
 
 }  // namespace sherd

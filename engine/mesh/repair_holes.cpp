@@ -16,8 +16,7 @@ std::vector<Loop> border_loops(const SurfaceMesh& mesh) {
   const std::vector<std::uint32_t> twin = build_twins(mesh);
   std::vector<std::uint32_t> before(mesh.vertex_count(), kNone);  // the border edge before[v] -> v
   for (std::size_t e = 0; e < twin.size(); ++e)
-    if (twin[e] == kNone)
-      before[mesh.triangles[e / 3][(e + 1) % 3 == 0 ? 0 : e % 3 + 1]] = mesh.triangles[e / 3][e % 3];
+    if (twin[e] == kNone) before[mesh.triangles[e / 3][(e % 3 + 1) % 3]] = mesh.triangles[e / 3][e % 3];
   std::vector<Loop> loops;
   for (std::uint32_t v = 0; v < before.size(); ++v) {
     if (before[v] == kNone) continue;

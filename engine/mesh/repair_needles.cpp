@@ -1,6 +1,7 @@
 // Triangles without a usable altitude: a cap (the third vertex near the longest edge) is flipped away, a needle (two
 // vertices near each other) is collapsed.
 #include <algorithm>
+#include <numeric>
 
 #include "engine/mesh/repair_steps.h"
 #include "engine/mesh/validate_edges.h"

@@ -1,6 +1,5 @@
 // Undirected edges of a triangle soup, however broken: validation and repair read them.
 #pragma once
-#include <numeric>
 #include <vector>
 
 #include "engine/mesh/surface_mesh.h"
@@ -25,7 +24,10 @@ inline std::size_t edge_end(const std::vector<EdgeUse>& uses, std::size_t i) {
 // Disjoint sets; a set's name is its smallest member, so results do not depend on the order of the unions.
 class DisjointSets {
  public:
-  explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  explicit DisjointSets(std::size_t n) {
+    parent_.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) parent_.push_back(static_cast<std::uint32_t>(i));
+  }
   std::uint32_t find(std::uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
