@@ -1,0 +1,106 @@
+#include "engine/fragment/cut.h"
+
+#include "engine/fragment/cut_checks.h"
+#include "engine/fragment/pieces.h"
+#include "engine/mesh/intersections.h"
+#include "kernels/core/random.h"
+
+namespace sherd {
+namespace {
+
+constexpr int kMaxJitters = 8;
+constexpr Real kJitter = 1e-7;  // of h
+
+// Copies, so that the columns of attributes are complete whatever the caller left out.
+SurfaceMesh with_attributes(const SurfaceMesh& mesh) {
+  SurfaceMesh copy = mesh;
+  copy.faces.resize(mesh.triangle_count());
+  return copy;
+}
+
+SurfaceMesh jittered(const SurfaceMesh& slab, Real amplitude, std::uint64_t seed) {
+  SurfaceMesh moved = slab;
+  Random random(seed);
+  for (std::size_t i = 0; i < moved.vertex_count(); ++i) {
+    const Real x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
+    moved.vertices.add(i, amplitude * Vec3{x, y, z});
+  }
+  return moved;
+}
+
+// One try with the slab as it is. `again`: another jitter may help.
+Difference attempt(const CutOperand& body, const SurfaceMesh& slab_mesh, bool& again) {
+  Difference result;
+  again = false;
+  const CutOperand slab(slab_mesh);
+  if (const std::string text = check_manifold(slab_mesh, slab.twin); !text.empty()) {
+    result.reason = "the slab is not a closed manifold: " + text;
+    return result;
+  }
+  again = true;
+  if (count_self_intersections(slab_mesh, 1) > 0) {
+    result.reason = "the slab intersects itself";
+    return result;
+  }
+  const Piercing piercing = pierce(body, slab);
+  if (piercing.status != PierceStatus::kOk) {
+    result.reason = piercing.reason;
+    return result;
+  }
+  result = subtract(body, slab, piercing);
+  if (!result.ok) return result;
+  std::string text = check_balance(result);
+  if (text.empty()) text = check_touched(result);
+  if (text.empty() && !result.mesh.triangles.empty()) text = check_manifold(result.mesh, build_twins(result.mesh));
+  result.ok = text.empty(), result.reason = text;
+  return result;
+}
+
+std::string refuse_operands(const SurfaceMesh& body, const SurfaceMesh& slab, const CutOperand& operand) {
+  if (std::string text = check_manifold(body, operand.twin); !text.empty())
+    return "the body is not a closed manifold: " + text;
+  if (!(signed_volume(body) > 0)) return "the body has no positive volume";
+  if (!(signed_volume(slab) > 0)) return "the slab has no positive volume";
+  return {};
+}
+
+void collect(const Difference& difference, const CutOptions& options, CutResult& result) {
+  result.reason.clear();
+  result.removed_volume = difference.removed_volume;
+  for (Piece& piece : split_pieces(difference.mesh)) {
+    if (piece.volume < options.min_fragment_volume * difference.body_volume) {
+      result.dust_volume += piece.volume;
+    } else {
+      result.fragments.push_back(std::move(piece.mesh));
+    }
+  }
+  result.ok = !result.fragments.empty();
+  if (!result.ok) result.reason = "nothing of the body is left";
+}
+
+}  // namespace
+
+CutResult cut(const SurfaceMesh& body, const SurfaceMesh& slab, const CutOptions& options) {
+  CutResult result;
+  for (const auto& [mesh, name] : {std::pair(&body, "the body"), std::pair(&slab, "the slab")})
+    if (result.reason = check_closed(*mesh, name); !result.reason.empty()) return result;
+  const CutOperand operand(with_attributes(body));
+  const SurfaceMesh full_slab = with_attributes(slab);
+  if (result.reason = refuse_operands(body, slab, operand); !result.reason.empty()) return result;
+  const Real amplitude = kJitter * (options.edge_length > 0 ? options.edge_length : mean_edge_length(body));
+  Random seeds(options.seed);
+  for (int jitters = 0;; ++jitters) {
+    bool again = false;
+    const SurfaceMesh moved = jitters == 0 ? full_slab : jittered(full_slab, amplitude, seeds.next());
+    const Difference difference = attempt(operand, moved, again);
+    result.jitters = jitters;
+    if (difference.ok) {
+      collect(difference, options, result);
+      return result;
+    }
+    result.reason = difference.reason;
+    if (!again || jitters == kMaxJitters) return result;
+  }
+}
+
+}  // namespace sherd
