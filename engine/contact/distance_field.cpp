@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kPad = 2;      // empty cells around the bounding box
 constexpr Real kBand = 2.0;  // exact within this many steps
+constexpr int kPasses = 3;   // of correction beyond the band
 // Irrational part of a step by which the grid is shifted, so that grid lines miss the vertices and edges of boxes and
 // plates.
 constexpr Vec3 kShift{0.3819660112501051, 0.4142135623730950, 0.2360679774997897};
@@ -70,45 +71,56 @@ void fill_band(const SurfaceMesh& mesh, const Grid& g, std::vector<Real>& d2, st
   });
 }
 
-// Nodes beyond the band, layer by layer: the nearest of the faces its settled neighbours know.
+template <class F>
+void for_neighbours(const Grid& g, std::size_t id, const F& visit) {
+  const std::size_t i = id % g.n[0], j = (id / g.n[0]) % g.n[1], k = id / (g.n[0] * g.n[1]);
+  if (i > 0) visit(id - 1);
+  if (i + 1 < g.n[0]) visit(id + 1);
+  if (j > 0) visit(id - g.n[0]);
+  if (j + 1 < g.n[1]) visit(id + g.n[0]);
+  if (k > 0) visit(id - g.n[0] * g.n[1]);
+  if (k + 1 < g.n[2]) visit(id + g.n[0] * g.n[1]);
+}
+
+// For each of `nodes`: the nearest of the faces its neighbours know; written only after all have read.
+void carry_faces(const SurfaceMesh& mesh, const Grid& g, const std::vector<std::size_t>& nodes, std::vector<Real>& d2,
+                 std::vector<std::uint32_t>& face) {
+  std::vector<std::uint32_t> found(nodes.size());
+  parallel_for(nodes.size(), 512, [&](std::size_t l) {
+    const std::size_t id = nodes[l];
+    const Vec3 p = g.node(id);
+    std::uint32_t tried[7] = {face[id]};
+    int count = 1;
+    found[l] = face[id];
+    for_neighbours(g, id, [&](std::size_t m) {
+      const std::uint32_t f = face[m];
+      if (f == kNone || std::find(tried, tried + count, f) != tried + count) return;
+      tried[count++] = f;
+      const Real q =
+          distance2(p, closest_point_on_triangle(p, mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2)));
+      if (q < d2[id] || (q == d2[id] && f < found[l])) d2[id] = q, found[l] = f;
+    });
+  });
+  for (std::size_t l = 0; l < nodes.size(); ++l) face[nodes[l]] = found[l];
+}
+
+// Nodes beyond the band, layer by layer; then again over all of them, since layers do not arrive in order of distance.
 void fill_far(const SurfaceMesh& mesh, const Grid& g, std::vector<Real>& d2, std::vector<std::uint32_t>& face) {
-  const auto neighbours = [&](std::size_t id, auto&& visit) {
-    const std::size_t i = id % g.n[0], j = (id / g.n[0]) % g.n[1], k = id / (g.n[0] * g.n[1]);
-    if (i > 0) visit(id - 1);
-    if (i + 1 < g.n[0]) visit(id + 1);
-    if (j > 0) visit(id - g.n[0]);
-    if (j + 1 < g.n[1]) visit(id + g.n[0]);
-    if (k > 0) visit(id - g.n[0] * g.n[1]);
-    if (k + 1 < g.n[2]) visit(id + g.n[0] * g.n[1]);
-  };
   std::vector<char> seen(g.count(), 0);
-  std::vector<std::size_t> settled, layer;
+  std::vector<std::size_t> settled, layer, far;
   for (std::size_t id = 0; id < g.count(); ++id)
     if (face[id] != kNone) settled.push_back(id), seen[id] = 1;
-  std::vector<std::uint32_t> found;
   while (!settled.empty()) {
     layer.clear();
     for (const std::size_t id : settled)
-      neighbours(id, [&](std::size_t m) {
+      for_neighbours(g, id, [&](std::size_t m) {
         if (!seen[m]) seen[m] = 1, layer.push_back(m);
       });
-    found.assign(layer.size(), kNone);
-    parallel_for(layer.size(), 512, [&](std::size_t l) {
-      const Vec3 p = g.node(layer[l]);
-      std::uint32_t tried[6];
-      int count = 0;
-      neighbours(layer[l], [&](std::size_t m) {
-        const std::uint32_t f = face[m];
-        if (f == kNone || std::find(tried, tried + count, f) != tried + count) return;
-        tried[count++] = f;
-        const Real q =
-            distance2(p, closest_point_on_triangle(p, mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2)));
-        if (q < d2[layer[l]] || (q == d2[layer[l]] && f < found[l])) d2[layer[l]] = q, found[l] = f;
-      });
-    });
-    for (std::size_t l = 0; l < layer.size(); ++l) face[layer[l]] = found[l];
+    carry_faces(mesh, g, layer, d2, face);
+    far.insert(far.end(), layer.begin(), layer.end());
     settled.swap(layer);
   }
+  for (int pass = 0; pass < kPasses; ++pass) carry_faces(mesh, g, far, d2, face);
 }
 
 // votes[node] += 1 where the parity of crossings along the grid line in direction `axis` says inside.

@@ -10,7 +10,7 @@ struct Prepared {
   Vec3 turn_a[3], turn_b[3];               // arm x axis
   Vec3 spin_a[3], spin_b[3];               // inverse inertia times turn: change of w by a unit impulse
   Real normal_mass = 0;                    // kg
-  Real tangent[3] = {};                    // xx, xy, yy of the inverse tangential 2x2 block
+  Real tangent_mass = 0;                   // kg; of the stiffest tangential direction
   Real normal_rate = 0, tangent_rate = 0;  // m/s a unit of impulse changes the contact's own velocity
 };
 
@@ -26,9 +26,9 @@ Prepared prepare(const Motion& a, const Motion& b, const ContactRow& r) {
   };
   p.normal_rate = k(0, 0);
   p.normal_mass = p.normal_rate > 0 ? 1 / p.normal_rate : 0;
-  const Real xx = k(1, 1), yy = k(2, 2), xy = 0.5 * (k(1, 2) + k(2, 1)), det = xx * yy - xy * xy;
-  if (det > 0) p.tangent[0] = yy / det, p.tangent[1] = -xy / det, p.tangent[2] = xx / det;
-  p.tangent_rate = std::max(xx, yy);
+  const Real xx = k(1, 1), yy = k(2, 2), xy = 0.5 * (k(1, 2) + k(2, 1));
+  p.tangent_rate = 0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy);
+  p.tangent_mass = p.tangent_rate > 0 ? 1 / p.tangent_rate : 0;
   return p;
 }
 
@@ -45,8 +45,9 @@ void apply(Motion& a, Motion& b, const ContactRow& r, const Prepared& p, int k, 
 // row.
 Real relax(Motion& a, Motion& b, ContactRow& r, const Prepared& p, Real target) {
   const Real v1 = velocity_along(a, b, r, p, 1), v2 = velocity_along(a, b, r, p, 2);
-  Real f1 = r.impulse[1] - (p.tangent[0] * v1 + p.tangent[1] * v2),
-       f2 = r.impulse[2] - (p.tangent[1] * v1 + p.tangent[2] * v2);
+  // One mass for both tangents: then sliding friction ends up opposite to the velocity, which a step with the 2x2 block
+  // followed by scaling back to the disc does not give.
+  Real f1 = r.impulse[1] - p.tangent_mass * v1, f2 = r.impulse[2] - p.tangent_mass * v2;
   const Real size = std::hypot(f1, f2), most = r.friction * r.impulse[0];
   if (size > most) f1 *= most / size, f2 *= most / size;
   const Real d1 = f1 - r.impulse[1], d2 = f2 - r.impulse[2];
