@@ -41,4 +41,21 @@ void write_png(const std::filesystem::path& path, const Image& image) {
   }
 }
 
+Image read_png(const std::filesystem::path& path) {
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  Image image;
+  bool ok = png_image_begin_read_from_file(&header, path.c_str()) != 0;
+  if (ok) {
+    header.format = PNG_FORMAT_RGB;
+    image.width = static_cast<int>(header.width), image.height = static_cast<int>(header.height);
+    image.rgb.resize(PNG_IMAGE_SIZE(header));
+    ok = png_image_finish_read(&header, nullptr, image.rgb.data(), 0, nullptr) != 0;
+  }
+  const std::string why = header.message;
+  png_image_free(&header);
+  if (!ok) throw InputError(fmt::format("{}: cannot read the picture ({}); give a PNG file", path.string(), why));
+  return image;
+}
+
 }  // namespace sherd

@@ -10,4 +10,7 @@ namespace sherd {
 // Throws InputError naming the file when it cannot be written, and for an image whose bytes do not match its size.
 void write_png(const std::filesystem::path& path, const Image& image);
 
+// Any PNG, converted to 8-bit RGB. Throws InputError naming the file when it cannot be read.
+Image read_png(const std::filesystem::path& path);
+
 }  // namespace sherd

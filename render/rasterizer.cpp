@@ -11,6 +11,14 @@
 #include "render/gl.h"
 #include "render/shaders.h"
 
+#ifdef __SANITIZE_ADDRESS__
+// OSMesa keeps a few words a context until the process ends; every program that links this file gets the exception.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libOSMesa\n";
+}
+#endif
+
 namespace sherd {
 namespace {
 

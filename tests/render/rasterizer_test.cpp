@@ -180,7 +180,8 @@ TEST(Rasterizer, ATranslucentBodyShowsTheCrackInside) {
   const View view = plain_view(100, 100);
   const auto redness = [&](float opacity) {
     frame.bodies[0].opacity = opacity;
-    const std::uint8_t* p = rasterizer.render(frame, view).pixel(50, 50);
+    const Image image = rasterizer.render(frame, view);
+    const std::uint8_t* p = image.pixel(50, 50);
     return p[0] - p[1];
   };
   EXPECT_LT(redness(1), 30);

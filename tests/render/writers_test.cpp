@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <png.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -42,14 +41,16 @@ TEST(Png, APictureReadsBackAsWritten) {
   const TemporaryFolder folder;
   const Image image = noise(37, 21);
   write_png(folder.path() / "a.png", image);
-  png_image header{};
-  header.version = PNG_IMAGE_VERSION;
-  ASSERT_TRUE(png_image_begin_read_from_file(&header, (folder.path() / "a.png").c_str()));
-  header.format = PNG_FORMAT_RGB;
-  Image read{static_cast<int>(header.width), static_cast<int>(header.height),
-             std::vector<std::uint8_t>(PNG_IMAGE_SIZE(header))};
-  ASSERT_TRUE(png_image_finish_read(&header, nullptr, read.rgb.data(), 0, nullptr));
-  EXPECT_EQ(image, read);
+  EXPECT_EQ(image, read_png(folder.path() / "a.png"));
+}
+
+TEST(Png, ABrokenFileIsAnErrorWithItsName) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "broken.png";
+  write_png(path, noise(64, 64));
+  std::filesystem::resize_file(path, 500);
+  EXPECT_NE(refusal([&] { read_png(path); }).find(path.string()), std::string::npos);
+  EXPECT_NE(refusal([&] { read_png(folder.path() / "none.png"); }).find("none.png"), std::string::npos);
 }
 
 TEST(Png, AnUnwritablePlaceIsAnErrorWithTheFilesName) {
