@@ -111,10 +111,42 @@ bool edge_pair_intersects(const Vec3& v, const Vec3& w, const Vec3& p, const Vec
   return decided;
 }
 
+// The filters below only ever answer "certainly apart"; they spare exact arithmetic on the coplanar neighbours of flat
+// faces. kMargin is far above the rounding of a difference and a dot product, relative to the vectors' lengths.
+constexpr Real kMargin = 1e-13;
+
+// Separating direction from a to b through the middle between their centroids.
+bool clearly_apart(const Corners& a, const Corners& b) {
+  const Vec3 ca = (a[0] + a[1] + a[2]) / 3.0, cb = (b[0] + b[1] + b[2]) / 3.0, o = 0.5 * (ca + cb), d = cb - ca;
+  const Real margin = kMargin * norm(d);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 u = a[k] - o, v = b[k] - o;
+    if (dot(u, d) >= -margin * norm(u) || dot(v, d) <= margin * norm(v)) return false;
+  }
+  return true;
+}
+
+// The triangles (o, a1, a2) and (o, b1, b2): a plane through o with each strictly on its side.
+bool clearly_only_vertex(const Vec3& o, const Vec3& a1, const Vec3& a2, const Vec3& b1, const Vec3& b2) {
+  const Vec3 p[4] = {a1 - o, a2 - o, b1 - o, b2 - o};
+  const Real l[4] = {norm(p[0]), norm(p[1]), norm(p[2]), norm(p[3])};
+  if (!(l[0] > 0 && l[1] > 0 && l[2] > 0 && l[3] > 0)) return false;
+  const Vec3 d = p[2] / l[2] + p[3] / l[3] - p[0] / l[0] - p[1] / l[1];
+  const Real margin = kMargin * norm(d);
+  return dot(p[0], d) < -margin * l[0] && dot(p[1], d) < -margin * l[1] && dot(p[2], d) > margin * l[2] &&
+         dot(p[3], d) > margin * l[3];
+}
+
+// p and q seen along the edge vw lie in opposite half planes.
+bool clearly_only_edge(const Vec3& v, const Vec3& w, const Vec3& p, const Vec3& q) {
+  const Vec3 e = w - v, vp = p - v, vq = q - v;
+  return dot(vp, vq) * norm2(e) - dot(vp, e) * dot(vq, e) < -kMargin * norm(vp) * norm(vq) * norm2(e);
+}
+
 }  // namespace
 
 bool triangles_intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  return disjoint_indices_intersect(a, b);
+  return !clearly_apart(a, b) && disjoint_indices_intersect(a, b);
 }
 
 bool triangles_intersect(const Triangle& ia, const std::array<Vec3, 3>& a, const Triangle& ib,
@@ -124,11 +156,14 @@ bool triangles_intersect(const Triangle& ia, const std::array<Vec3, 3>& a, const
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t l = 0; l < 3; ++l)
       if (ia[k] == ib[l]) ++shared, i = k, j = l, in_b[k] = true, in_a[l] = true;
-  if (shared == 0) return disjoint_indices_intersect(a, b);
-  if (shared == 1) return vertex_pair_intersects(a, i, b, j);
+  if (shared == 0) return triangles_intersect(a, b);
+  if (shared == 1)
+    return !clearly_only_vertex(a[i], a[(i + 1) % 3], a[(i + 2) % 3], b[(j + 1) % 3], b[(j + 2) % 3]) &&
+           vertex_pair_intersects(a, i, b, j);
   if (shared > 2) return true;
   const std::size_t p = !in_b[0] ? 0 : (!in_b[1] ? 1 : 2), q = !in_a[0] ? 0 : (!in_a[1] ? 1 : 2);
-  return edge_pair_intersects(a[(p + 1) % 3], a[(p + 2) % 3], a[p], b[q]);
+  const Vec3 &v = a[(p + 1) % 3], &w = a[(p + 2) % 3];
+  return !clearly_only_edge(v, w, a[p], b[q]) && edge_pair_intersects(v, w, a[p], b[q]);
 }
 
 bool faces_intersect(const SurfaceMesh& mesh, std::size_t t0, std::size_t t1) {

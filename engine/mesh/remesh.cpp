@@ -1,0 +1,86 @@
+#include "engine/mesh/remesh.h"
+
+#include <numbers>
+
+#include "engine/mesh/intersections.h"
+#include "engine/mesh/remesh_work.h"
+#include "kernels/core/error.h"
+
+namespace sherd {
+namespace {
+
+void check(const SurfaceMesh& in, const RemeshOptions& o) {
+  if (!(o.edge_length > 0) || !std::isfinite(o.edge_length))
+    throw InputError(fmt::format("remesh: edge_length is {}; give a positive length in metres", o.edge_length));
+  if (!(o.feature_angle > 0 && o.feature_angle <= 180))
+    throw InputError(fmt::format("remesh: feature_angle is {}; give degrees in (0, 180]", o.feature_angle));
+  if (o.iterations < 0) throw InputError(fmt::format("remesh: iterations is {}; give 0 or more", o.iterations));
+  if (!o.locked.empty() && o.locked.size() != in.vertex_count())
+    throw InputError(fmt::format("remesh: {} lock flags for {} vertices; give none or one each", o.locked.size(),
+                                 in.vertex_count()));
+}
+
+// Each face takes `source` from the input face it lies on.
+void inherit_sources(const SurfaceMesh& in, const Remesher& work, SurfaceMesh& out, Real h, RemeshReport& report) {
+  Real deviation2 = 0, face_deviation2 = 0;
+  for (std::size_t t = 0; t < out.triangle_count(); ++t) {
+    face_deviation2 = std::max(face_deviation2, work.input().closest(out.centroid(t)).distance2);
+    const Vec3 n = normalized(out.area_normal2(t));
+    auto found = work.project(out.centroid(t), n, out.faces.kind[t], out.faces.crack[t]);
+    if (!found) found = work.project(out.centroid(t), {}, out.faces.kind[t], out.faces.crack[t]);
+    if (!found) continue;
+    out.faces.source[t] = in.faces.source[found->face];
+  }
+  for (std::size_t v = 0; v < out.vertex_count(); ++v)
+    deviation2 = std::max(deviation2, work.input().closest(out.vertices[v]).distance2);
+  report.max_deviation = std::sqrt(deviation2) / h;
+  report.max_face_deviation = std::sqrt(face_deviation2) / h;
+}
+
+void measure(const SurfaceMesh& in, const SurfaceMesh& out, RemeshReport& report) {
+  Real smallest = std::numbers::pi;
+  const Real degree = std::numbers::pi / 180;
+  for (std::size_t t = 0; t < out.triangle_count(); ++t) {
+    const Real a = smallest_angle({out.corner(t, 0), out.corner(t, 1), out.corner(t, 2)});
+    smallest = std::min(smallest, a);
+    report.below_15 += a < 15 * degree;
+    report.below_1 += a < degree;
+  }
+  report.min_angle = smallest / degree;
+  const Real volume = signed_volume(in);
+  report.volume_change = volume != 0 ? (signed_volume(out) - volume) / volume : 0;
+}
+
+}  // namespace
+
+RemeshReport remesh(const SurfaceMesh& in, const RemeshOptions& options, SurfaceMesh& out) {
+  check(in, options);
+  RemeshReport report;
+  const auto refuse = [&](std::string reason) {
+    report.reason = std::move(reason);
+    out = in;
+    return report;
+  };
+  EditMesh mesh;
+  const char* why = nullptr;
+  SurfaceMesh source = in;
+  source.faces.resize(in.triangle_count());
+  if (in.triangles.empty()) return refuse("the mesh has no triangles");
+  if (!mesh.assign(source, why)) return refuse(why);
+  Remesher work(source, std::move(mesh), options, report);
+  work.run();
+  SurfaceMesh result = work.mesh().extract();
+  inherit_sources(source, work, result, options.edge_length, report);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> examples;
+  if (count_self_intersections(result, 1, &examples) > 0) {
+    const Vec3 at = result.centroid(examples[0].first);
+    return refuse(fmt::format("faces intersect near ({:.6g}, {:.6g}, {:.6g}); does the input intersect itself there?",
+                              at.x, at.y, at.z));
+  }
+  measure(source, result, report);
+  report.status = RemeshStatus::kOk;
+  out = std::move(result);
+  return report;
+}
+
+}  // namespace sherd

@@ -1,0 +1,42 @@
+// Isotropic, feature-preserving remeshing to one edge length: split long edges, collapse short ones, flip, smooth
+// tangentially, and stay on the input surface (Botsch & Kobbelt 2004; the paper's local remeshing rules on the body).
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/mesh/surface_mesh.h"
+
+namespace sherd {
+
+struct RemeshOptions {
+  Real edge_length = 0;              // target h, metres; edges come out between about 0.8 h and 1.33 h
+  Real feature_angle = 40;           // degrees: edges whose normals differ by more are creases
+  int iterations = 5;                // >= 0; 0 only repairs slivers
+  std::vector<std::uint8_t> locked;  // empty, or one entry a vertex: nonzero vertices keep their place, and edges and
+                                     // faces between locked vertices stay as they are
+};
+
+enum class RemeshStatus { kOk, kRefused };
+
+struct RemeshReport {
+  RemeshStatus status = RemeshStatus::kRefused;
+  std::string reason;  // of a refusal; `out` is then the input
+  std::size_t splits = 0, collapses = 0, flips = 0, moves = 0;
+  std::size_t blocked = 0;                // operations rejected because faces would have intersected
+  Real min_angle = 0;                     // of all output faces, degrees
+  std::size_t below_15 = 0, below_1 = 0;  // output faces with a smaller angle, degrees
+  Real max_deviation = 0;                 // of output vertices from the input surface, in units of h
+  Real max_face_deviation = 0;            // of output face centroids, in units of h
+  Real volume_change = 0;                 // (output - input) / input
+};
+
+// `in` is closed and 2-manifold (else the mesh is refused), without self-intersections (each operation is tested
+// exactly, so none arise; with some in the input the result may be refused). Feature lines: creases, and edges between
+// faces of different kind or crack id. Line ends, junctions, sharp turns stay where they are, other line vertices move
+// along the line only. Every output face has the kind and crack id of the input region it lies in, and the `source` of
+// the closest input face there. Vertices are renumbered (locked ones keep their order). Deterministic. Throws
+// InputError for options out of range.
+RemeshReport remesh(const SurfaceMesh& in, const RemeshOptions& options, SurfaceMesh& out);
+
+}  // namespace sherd

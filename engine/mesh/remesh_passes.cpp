@@ -1,0 +1,273 @@
+#include <algorithm>
+#include <numbers>
+
+#include "engine/mesh/remesh_work.h"
+
+namespace sherd {
+namespace {
+
+constexpr Real kDegree = std::numbers::pi / 180;
+
+struct EdgeKey {
+  Real length;
+  std::uint32_t h, a, b;  // the half-edge and its ends when the pass began
+};
+
+std::vector<EdgeKey> edges(const EditMesh& mesh, Real low, Real high) {
+  std::vector<EdgeKey> keys;
+  for (std::uint32_t h = 0; h < mesh.twin.size(); ++h) {
+    if (!mesh.alive(h / 3) || h > mesh.twin[h]) continue;
+    const Real length = mesh.edge_length(h);
+    if (length > low && length < high) keys.push_back({length, h, mesh.from(h), mesh.to(h)});
+  }
+  return keys;
+}
+
+bool still_there(const EditMesh& mesh, const EdgeKey& k) {
+  return mesh.alive(k.h / 3) && mesh.from(k.h) == k.a && mesh.to(k.h) == k.b;
+}
+
+int valence_error(std::size_t valence) {
+  return std::abs(static_cast<int>(valence) - 6);
+}
+
+}  // namespace
+
+Remesher::Remesher(const SurfaceMesh& in, EditMesh mesh, const RemeshOptions& options, RemeshReport& report)
+    : mesh_(std::move(mesh)),
+      options_(options),
+      report_(report),
+      locked_(options.locked),
+      input_(in),
+      input_bvh_(in),
+      h_(options.edge_length) {
+  features_ = find_feature_lines(mesh_, options.feature_angle, h_, options.locked);
+}
+
+void Remesher::run() {
+  tree_.build(mesh_);
+  if (options_.iterations > 0) collapse_short();
+  repair(2 * kDegree);
+  for (int i = 0; i < options_.iterations; ++i) {
+    tree_.build(mesh_);
+    split_long();
+    collapse_short();
+    flip_all();
+    smooth_all();
+    repair(i + 1 == options_.iterations ? 20 * kDegree : 5 * kDegree);
+  }
+  if (options_.iterations > 0) smooth_all();
+  for (int i = 0; i < 3; ++i) repair(20 * kDegree);
+}
+
+std::optional<TriangleBvh::Closest> Remesher::project(const Vec3& p, const Vec3& n, FaceKind kind,
+                                                      std::int32_t crack) const {
+  const auto fits = [&](std::uint32_t f) {
+    if (input_.faces.kind[f] != kind || input_.faces.crack[f] != crack) return false;
+    return n == Vec3{} || dot(input_.area_normal2(f), n) > 0.2 * norm(input_.area_normal2(f));
+  };
+  TriangleBvh::Closest best = input_bvh_.closest(p);
+  if (best.face == kNone || fits(best.face)) return best;
+  const Real reach = std::sqrt(best.distance2) + 0.5 * h_;
+  std::vector<std::uint32_t> faces;
+  input_bvh_.overlapping({p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}}, faces);
+  best = {};
+  for (const std::uint32_t f : faces) {
+    if (!fits(f)) continue;
+    const auto& c = input_bvh_.corners(f);
+    const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
+    if (distance2(p, q) < best.distance2) best = {q, f, distance2(p, q)};
+  }
+  if (best.face == kNone) return std::nullopt;
+  return best;
+}
+
+void Remesher::collapse_short() {
+  std::vector<EdgeKey> keys = edges(mesh_, -1, 0.8 * h_);
+  std::sort(keys.begin(), keys.end(),
+            [](const EdgeKey& a, const EdgeKey& b) { return a.length != b.length ? a.length < b.length : a.h < b.h; });
+  for (const EdgeKey& k : keys) {
+    if (!still_there(mesh_, k) || mesh_.edge_length(k.h) >= 0.8 * h_) continue;
+    const std::uint32_t t = mesh_.twin[k.h];
+    const bool forward = features_.role[k.a] <= features_.role[k.b];
+    if (!try_collapse(forward ? k.h : t, false)) try_collapse(forward ? t : k.h, false);
+  }
+}
+
+void Remesher::split_long() {
+  const Real limit = 4.0 / 3 * h_;
+  // A long edge needs several rounds of halving.
+  for (int round = 0; round < 40; ++round) {
+    std::vector<EdgeKey> keys = edges(mesh_, limit, 1e300);
+    std::sort(keys.begin(), keys.end(), [](const EdgeKey& a, const EdgeKey& b) {
+      return a.length != b.length ? a.length > b.length : a.h < b.h;
+    });
+    const std::size_t before = report_.splits;
+    for (const EdgeKey& k : keys) {
+      if (!still_there(mesh_, k) || locked_edge(k.h)) continue;
+      const std::uint32_t line = mesh_.line[k.h];
+      if (line == kNone) {
+        split_free_edge(k.h);
+        continue;
+      }
+      const Real arc = 0.5 * (arc_on(line, k.a) + arc_on(line, k.b));
+      try_split(k.h, features_.lines[line].at(arc), arc);
+    }
+    if (report_.splits == before) return;
+  }
+}
+
+// At the midpoint lifted to the input surface, or at the midpoint itself when that is near.
+void Remesher::split_free_edge(std::uint32_t h) {
+  const Vec3 middle = 0.5 * (mesh_.position[mesh_.from(h)] + mesh_.position[mesh_.to(h)]);
+  const auto normal = [&](std::uint32_t t) {
+    const auto c = mesh_.corners(t);
+    return cross(c[1] - c[0], c[2] - c[0]);
+  };
+  const std::uint32_t f = h / 3;
+  const Vec3 n = normalized(normal(f) + normal(mesh_.twin[h] / 3));
+  const auto found = project(middle, n, mesh_.faces.kind[f], mesh_.faces.crack[f]);
+  if (!found || found->distance2 > 0.25 * h_ * h_) return;
+  // A midpoint far off the surface that cannot be lifted stays a long edge: fewer vertices rather than wrong ones.
+  if (!try_split(h, found->point, 0) && found->distance2 < 0.0025 * h_ * h_) try_split(h, middle, 0);
+}
+
+void Remesher::flip_all() {
+  for (int round = 0; round < 2; ++round)
+    for (std::uint32_t h = 0; h < mesh_.twin.size(); ++h) {
+      if (!mesh_.alive(h / 3) || h > mesh_.twin[h] || mesh_.line[h] != kNone || locked_edge(h)) continue;
+      const std::uint32_t t = mesh_.twin[h], a = mesh_.from(h), b = mesh_.to(h), c = mesh_.tip(h), d = mesh_.tip(t);
+      const Vec3 &pa = mesh_.position[a], &pb = mesh_.position[b], &pc = mesh_.position[c], &pd = mesh_.position[d];
+      const Real before = std::min(smallest_angle({pa, pb, pc}), smallest_angle({pb, pa, pd}));
+      const Real after = std::min(smallest_angle({pa, pd, pc}), smallest_angle({pb, pc, pd}));
+      bool good = after > before * (1 + 1e-9) && before < 40 * kDegree;
+      if (!good && after > 25 * kDegree && after > 0.7 * before) {
+        const std::size_t va = mesh_.valence(a), vb = mesh_.valence(b), vc = mesh_.valence(c), vd = mesh_.valence(d);
+        good = va > 3 && vb > 3 &&
+               valence_error(va - 1) + valence_error(vb - 1) + valence_error(vc + 1) + valence_error(vd + 1) <
+                   valence_error(va) + valence_error(vb) + valence_error(vc) + valence_error(vd);
+      }
+      if (good) try_flip(h);
+    }
+}
+
+void Remesher::smooth_all() {
+  for (int round = 0; round < 2; ++round)
+    for (std::uint32_t v = 0; v < mesh_.position.size(); ++v) {
+      if (mesh_.out[v] == kNone || locked(v)) continue;
+      if (features_.role[v] == VertexRole::kLine) smooth_line_vertex(v);
+      if (features_.role[v] == VertexRole::kFree) smooth_free_vertex(v);
+    }
+}
+
+bool Remesher::smooth_line_vertex(std::uint32_t v) {
+  const std::uint32_t line = features_.line[v];
+  Real sum = 0;
+  int count = 0;
+  mesh_.for_out(v, [&](std::uint32_t h) {
+    if (mesh_.line[h] == line) sum += arc_on(line, mesh_.to(h)), ++count;
+  });
+  if (count != 2) return false;
+  for (const Real step : {1.0, 0.4}) {
+    const Real arc = features_.arc[v] + step * (0.5 * sum - features_.arc[v]);
+    if (std::abs(arc - features_.arc[v]) < 1e-3 * h_) return false;
+    if (!try_move(v, features_.lines[line].at(arc))) continue;
+    features_.arc[v] = arc;
+    return true;
+  }
+  return false;
+}
+
+// Area-weighted mean of the centroids around: evens out the areas.
+Vec3 Remesher::smoothed_position(std::uint32_t v) const {
+  Vec3 sum;
+  Real weight = 0;
+  mesh_.for_out(v, [&](std::uint32_t h) {
+    const auto c = mesh_.corners(h / 3);
+    const Real area = norm(cross(c[1] - c[0], c[2] - c[0]));
+    sum += area * (c[0] + c[1] + c[2]) / 3.0;
+    weight += area;
+  });
+  return weight > 0 ? sum / weight : mesh_.position[v];
+}
+
+bool Remesher::smooth_free_vertex(std::uint32_t v) {
+  const Vec3 x = mesh_.position[v], n = vertex_normal(v);
+  Vec3 d = smoothed_position(v) - x;
+  d -= n * dot(d, n);
+  const std::uint32_t f = mesh_.out[v] / 3;
+  for (const Real step : {1.0, 0.4}) {
+    const auto found = project(x + d * step, n, mesh_.faces.kind[f], mesh_.faces.crack[f]);
+    if (!found || found->distance2 > 0.25 * h_ * h_) continue;
+    if (distance2(found->point, x) < 1e-6 * h_ * h_) return false;
+    if (try_move(v, found->point)) return true;
+  }
+  return false;
+}
+
+// Worst faces first. Every success changes the neighbourhood, so a few rounds.
+void Remesher::repair(Real angle) {
+  for (int round = 0; round < 4; ++round) {
+    std::vector<std::pair<Real, std::uint32_t>> bad;
+    for (std::uint32_t t = 0; t < mesh_.triangle.size(); ++t)
+      if (mesh_.alive(t)) {
+        const Real a = smallest_angle(mesh_.corners(t));
+        if (a < angle) bad.emplace_back(a, t);
+      }
+    std::sort(bad.begin(), bad.end());
+    const std::size_t before = report_.collapses + report_.flips + report_.moves;
+    for (const auto& [a, t] : bad)
+      if (mesh_.alive(t) && smallest_angle(mesh_.corners(t)) < angle) repair_face(t, angle);
+    if (report_.collapses + report_.flips + report_.moves == before) return;
+  }
+}
+
+void Remesher::repair_face(std::uint32_t t, Real angle) {
+  std::uint32_t h[3] = {3 * t, 3 * t + 1, 3 * t + 2};
+  std::sort(h, h + 3, [&](std::uint32_t a, std::uint32_t b) {
+    const Real la = mesh_.edge_length(a), lb = mesh_.edge_length(b);
+    return la != lb ? la < lb : a < b;
+  });
+  const Real now = smallest_angle(mesh_.corners(t));
+  // Needle: the short edge goes, along the feature line first.
+  if (mesh_.edge_length(h[0]) < 0.6 * h_) {
+    const bool forward = features_.role[mesh_.from(h[0])] <= features_.role[mesh_.to(h[0])];
+    const std::uint32_t twin = mesh_.twin[h[0]];
+    if (try_collapse(forward ? h[0] : twin, true) || try_collapse(forward ? twin : h[0], true)) return;
+  }
+  // Cap: the long edge is flipped, or split at the foot of the height when it is a feature edge.
+  for (const std::uint32_t e : {h[2], h[1]}) {
+    if (mesh_.line[e] != kNone || locked_edge(e)) continue;
+    const std::uint32_t o = mesh_.twin[e];
+    const Vec3 &a = mesh_.position[mesh_.from(e)], &b = mesh_.position[mesh_.to(e)];
+    const Vec3 &c = mesh_.position[mesh_.tip(e)], &d = mesh_.position[mesh_.tip(o)];
+    const Real before = std::min(now, smallest_angle({b, a, d}));
+    if (std::min(smallest_angle({a, d, c}), smallest_angle({b, c, d})) > before * 1.01 && try_flip(e)) return;
+  }
+  if (mesh_.line[h[2]] != kNone && now < 0.5 * angle && split_cap(h[2])) return;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const std::uint32_t v = mesh_.triangle[t][k];
+    if (locked(v)) continue;
+    if (features_.role[v] == VertexRole::kFree && smooth_free_vertex(v)) return;
+    if (features_.role[v] == VertexRole::kLine && smooth_line_vertex(v)) return;
+  }
+}
+
+// Splits feature edge h next to the opposite vertex and merges that vertex into the new one.
+bool Remesher::split_cap(std::uint32_t h) {
+  const std::uint32_t line = mesh_.line[h], v = mesh_.tip(h);
+  if (locked_edge(h) || features_.role[v] != VertexRole::kFree) return false;
+  const FeatureLine& l = features_.lines[line];
+  const Real s0 = arc_on(line, mesh_.from(h)), s1 = arc_on(line, mesh_.to(h));
+  const Real arc = std::clamp(l.nearest(mesh_.position[v]), std::min(s0, s1), std::max(s0, s1));
+  if (std::min(std::abs(arc - s0), std::abs(arc - s1)) < 0.05 * h_) return false;
+  if (!try_split(h, l.at(arc), arc)) return false;
+  const auto m = static_cast<std::uint32_t>(mesh_.position.size() - 1);
+  std::uint32_t edge = kNone;
+  mesh_.for_out(v, [&](std::uint32_t x) {
+    if (mesh_.to(x) == m) edge = x;
+  });
+  return edge != kNone && try_collapse(edge, true);
+}
+
+}  // namespace sherd
