@@ -79,23 +79,22 @@ BodyContact body_contact(const Body& body, const Body* other, const Contact& con
   return c;
 }
 
-Load make_load(const Body& body, std::span<const BodyContact> contacts, const std::vector<std::uint32_t>& twins,
-               const TriangleBvh& bvh, const Vec3& omega) {
+Load make_load(const SurfaceMesh& mesh, const MassProperties& mass, std::span<const BodyContact> contacts,
+               const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh, const Vec3& omega) {
   Load load;
   for (const BodyContact& c : contacts) {
-    load.patches.push_back(make_patch(*body.mesh, twins, bvh, c.point, c.patch_radius, c.force));
-    append_panels(*body.mesh, load.patches.back(), load.panels);
+    load.patches.push_back(make_patch(mesh, twins, bvh, c.point, c.patch_radius, c.force));
+    append_panels(mesh, load.patches.back(), load.panels);
   }
   Vec3 force, moment;
-  resultant(load.panels, body.mass.centre, force, moment);
-  const Mat3& inertia = body.mass.inertia;
+  resultant(load.panels, mass.centre, force, moment);
+  const Mat3& inertia = mass.inertia;
   const Vec3 alpha = inverse(inertia) * (moment - cross(omega, inertia * omega));
   const Mat3 spin = cross_matrix(omega);
-  load.body_force.origin = body.mass.centre;
-  load.body_force.constant = force * (-1 / body.mass.volume);
-  load.body_force.linear = (cross_matrix(alpha) + spin * spin) * -body.density;
-  // Resultants of the body force over the polyhedron: volume * constant, and the moment of the linear part through the inertia.
-  load.net_force = force + load.body_force.constant * body.mass.volume;
+  load.body_force.origin = mass.centre;
+  load.body_force.constant = force * (-1 / mass.volume);
+  load.body_force.linear = (cross_matrix(alpha) + spin * spin) * (-mass.mass / mass.volume);
+  load.net_force = force + load.body_force.constant * mass.volume;
   load.net_moment = moment - inertia * alpha - cross(omega, inertia * omega);
   return load;
 }

@@ -33,10 +33,11 @@ BodyContact body_contact(const Body& body, const Body* other, const Contact& con
 // half the local edge length nor above the bounding-box diagonal (a flat face).
 Real curvature_radius(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh, const Vec3& point);
 
-// The load of all contacts on one body. Inertia relief: b(x) = -rho [F/m + alpha x d + omega x (omega x d)], d = x - centre,
-// I alpha = moment - omega x (I omega); weight and its reaction enter through the contact forces, free fall is stress free.
-// `omega`: angular velocity in material axes, rad/s.
-Load make_load(const Body& body, std::span<const BodyContact> contacts, const std::vector<std::uint32_t>& twins,
-               const TriangleBvh& bvh, const Vec3& omega);
+// The load of all contacts on one free body with the given mesh and mass. Inertia relief:
+// b(x) = -rho [F/m + alpha x d + omega x (omega x d)], d = x - centre, I alpha = moment - omega x (I omega), rho = mass/volume.
+// Weight and its reaction enter through the contact forces; free fall is stress free. `omega`: angular velocity in material
+// axes, rad/s; `mass` exactly of `mesh`, so that the load balances to rounding.
+Load make_load(const SurfaceMesh& mesh, const MassProperties& mass, std::span<const BodyContact> contacts,
+               const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh, const Vec3& omega);
 
 }  // namespace sherd

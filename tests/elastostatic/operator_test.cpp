@@ -137,9 +137,9 @@ TEST(ElasticBody, RefusesAnOperatorThatWouldNotFit) {
 
 TEST(Krylov, BothSolversReachTheToleranceAndAgree) {
   struct Matrix final : LinearOperator {
-    std::vector<Real> m;
     std::size_t n = 60;
-    Matrix() : m(n * n) {
+    std::vector<Real> m = std::vector<Real>(60 * 60);
+    Matrix() {
       Random random(5);
       for (std::size_t i = 0; i < n * n; ++i) m[i] = random.uniform(-1, 1) / 12 + (i % (n + 1) == 0 ? 1.0 : 0.0);
     }

@@ -1,0 +1,45 @@
+// The run (paper algorithm 1): steps bodies, breaks them, says when a frame is due.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "engine/frame/frame.h"
+#include "engine/scene/scene.h"
+
+namespace sherd {
+
+struct SimulationOptions {
+  int threads = 0;       // 0: all processors; the result does not depend on it
+};
+
+class Simulation {
+ public:
+  // Loads and prepares all bodies. Throws InputError when a mesh cannot be used.
+  Simulation(const Scene& scene, const SimulationOptions& options);
+  ~Simulation();
+
+  bool done() const;         // the scene's duration is reached
+  void step();
+  Real time() const;         // s
+  // True at the start and whenever simulated time has passed the next frame; snapshot() then serves it.
+  bool frame_due() const;
+  Frame snapshot();          // of the world, now; consumes the due frame
+  // The scene's material_view body and its fragments in their material space, translucent; for the frame last served.
+  Frame material_snapshot() const;
+  View view() const;         // the scene's camera, or one that frames the bodies and where they fall
+  View material_view() const;
+  std::size_t frame_count() const;  // frames the whole run serves
+
+  // What happened, as JSON. Everything under a key "seconds" may differ between runs; all else is the same in every run.
+  std::string stats_json() const;
+  // One line for a person: time, bodies, the last event.
+  std::string status() const;
+  // Messages of the preparation (repair, remeshing), one a line, with the body's name.
+  std::vector<std::string> messages() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sherd
