@@ -1,0 +1,60 @@
+#include <algorithm>
+#include <exception>
+#include <limits>
+
+#include "engine/step/simulation.h"
+#include "tools/sherd/commands.h"
+#include "tools/sherd/progress.h"
+#include "tools/sherd/run_writer.h"
+
+namespace sherd {
+namespace {
+
+// At each due frame (the start is one) a snapshot goes to the writer, until the end, the frame limit or Ctrl-C.
+void simulate(Simulation& simulation, RunWriter& writer, std::size_t frame_limit, bool material, Progress& progress) {
+  const View view = simulation.view();
+  std::size_t bodies = 0;
+  for (;;) {
+    if (simulation.frame_due()) {
+      const Frame frame = simulation.snapshot();
+      bodies = frame.bodies.size();
+      writer.add(frame, view);
+      if (material) writer.add_material(simulation.material_snapshot(), simulation.material_view());
+    }
+    progress.update(simulation.time(), bodies, writer.frames());
+    if (simulation.done() || interrupted() || writer.frames() >= frame_limit) return;
+    simulation.step();
+  }
+}
+
+}  // namespace
+
+int run_command(const RunOptions& options) {
+  catch_interrupts();
+  const Scene scene = load_scene(options.scene);
+  // Meshes are read and repaired here: nothing is written for a scene that cannot run.
+  Simulation simulation(scene, {.threads = options.threads});
+  const std::filesystem::path folder =
+      options.out.empty() ? std::filesystem::path("out") / options.scene.stem() : options.out;
+  RunWriter writer(scene.output, scene.frame_rate, folder, options.render);
+  const bool limited = options.frames > 0;
+  const std::size_t frame_limit =
+      limited ? static_cast<std::size_t>(options.frames) : std::numeric_limits<std::size_t>::max();
+  const Real duration =
+      limited ? std::min(scene.duration, static_cast<Real>(options.frames) / scene.frame_rate) : scene.duration;
+  Progress progress(duration, options.quiet);
+  for (const std::string& message : simulation.messages()) progress.note(message);
+  std::exception_ptr failure;
+  try {
+    simulate(simulation, writer, frame_limit, writer.draws() && scene.output.material_view.has_value(), progress);
+  } catch (...) {
+    failure = std::current_exception();  // what there is so far is written before it goes on
+  }
+  for (const std::string& line : writer.finish(simulation.stats_json())) progress.note(line);
+  if (failure) std::rethrow_exception(failure);
+  if (!interrupted()) return kSuccess;
+  progress.note("ended early by a signal; everything so far is on disk");
+  return kInterrupted;
+}
+
+}  // namespace sherd
