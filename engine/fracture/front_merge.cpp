@@ -1,4 +1,4 @@
-// O7: ears close notches, bridges join fronts that meet (paper fig. 12), a loop of three is filled. Nodes are never
+// O7: ears close notches, bridges join fronts that meet (paper fig. 12), a small loop is filled. Nodes are never
 // welded: welding makes pinch nodes.
 #include <algorithm>
 
@@ -9,6 +9,8 @@ namespace {
 
 constexpr Real kEarCosine = 0.2, kEarLength = 1.5, kBridge = 1.9;  // lengths of h
 constexpr std::size_t kBridgeLoopDistance = 3;
+constexpr std::size_t kFillSize = 7;  // nodes: at most 42 triangulations
+constexpr Real kFillDiameter = 3;     // of h
 
 void retire(Growth& g, std::uint32_t v) {
   g.sheet.state[v] = NodeState::kInterior;
@@ -110,12 +112,71 @@ bool all_dead(const Growth& g, const FrontLoop& loop) {
   return true;
 }
 
+// All triangulations of the polygon loop[first .. last] (its closing edge last -> first included), appended to `out`.
+using Triangulation = std::vector<Triangle>;
+std::vector<Triangulation> triangulations(const FrontLoop& loop, std::size_t first, std::size_t last) {
+  if (last < first + 2) return {{}};
+  std::vector<Triangulation> out;
+  for (std::size_t k = first + 1; k < last; ++k)
+    for (const Triangulation& a : triangulations(loop, first, k))
+      for (const Triangulation& b : triangulations(loop, k, last)) {
+        Triangulation t = a;
+        t.insert(t.end(), b.begin(), b.end());
+        t.push_back({loop[last], loop[k], loop[first]});  // against the loop's own direction: the hole's side
+        out.push_back(std::move(t));
+      }
+  return out;
+}
+
+bool diagonals_are_new(const Growth& g, const FrontLoop& loop, const Triangulation& triangles) {
+  const auto place = [&](std::uint32_t v) {
+    return static_cast<std::size_t>(std::find(loop.begin(), loop.end(), v) - loop.begin());
+  };
+  for (const Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t i = place(t[k]), j = place(t[(k + 1) % 3]), apart = i > j ? i - j : j - i;
+      if (apart != 1 && apart != loop.size() - 1 && g.sheet.has_edge(t[k], t[(k + 1) % 3])) return false;
+    }
+  return true;
+}
+
+// The hole's triangulation of least area that fits, else a fan around its centre.
+bool fill(Growth& g, const FrontLoop& loop) {
+  const auto area = [&](const Triangulation& triangles) {
+    Real sum = 0;
+    for (const Triangle& t : triangles)
+      sum +=
+          norm(cross(g.sheet.position[t[1]] - g.sheet.position[t[0]], g.sheet.position[t[2]] - g.sheet.position[t[0]]));
+    return sum;
+  };
+  std::vector<std::pair<Real, Triangulation>> choices;
+  for (Triangulation& t : triangulations(loop, 0, loop.size() - 1)) choices.emplace_back(area(t), std::move(t));
+  std::stable_sort(choices.begin(), choices.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [size, triangles] : choices)
+    if (diagonals_are_new(g, loop, triangles) && g.sheet.apply({{}, triangles, kNone, {}})) return true;
+  if (loop.size() < 4) return false;
+  Vec3 centre{}, normal{};
+  for (const std::uint32_t v : loop)
+    centre += g.sheet.position[v] / static_cast<Real>(loop.size()), normal += g.sheet.normal[v];
+  const std::uint32_t c = g.sheet.add_node(centre, normalized(normal), NodeState::kInterior);
+  SheetEdit fan;
+  for (std::size_t i = 0; i < loop.size(); ++i) fan.add.push_back({loop[(i + 1) % loop.size()], loop[i], c});
+  return g.sheet.apply(fan);
+}
+
+bool is_small(const Growth& g, const FrontLoop& loop) {
+  if (loop.size() > kFillSize) return false;
+  Box box;
+  for (const std::uint32_t v : loop) box.grow(g.sheet.position[v]);
+  return box.diagonal() < kFillDiameter * g.h;
+}
+
+// A loop that has shrunk to a small hole is the paper's separation by degeneration of a crack circle.
 bool fill_small_loops(Growth& g) {
   bool changed = false;
   for (std::size_t l = 0; l < g.loops.size();) {
     const FrontLoop loop = g.loops[l];
-    const bool fill = loop.size() == 3 && !all_dead(g, loop) && g.sheet.add({Triangle{loop[2], loop[1], loop[0]}});
-    if (!fill && loop.size() >= 3) {
+    if (loop.size() >= 3 && (!is_small(g, loop) || all_dead(g, loop) || !fill(g, loop))) {
       ++l;
       continue;
     }

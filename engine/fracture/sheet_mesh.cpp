@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/mesh/bvh.h"
 #include "engine/mesh/intersections.h"
 
 namespace sherd {
@@ -113,6 +112,30 @@ bool SheetMesh::trial_is_sound(const Trial& trial) const {
   return dot(n, mean) > 0;
 }
 
+// Layers that lie over each other keep the clearance between them, so that the slab does not meet itself; in a constant
+// field arms that overlap are coplanar to rounding and only this sees it. Fronts that meet edge to edge may come close.
+bool SheetMesh::crowds(const Trial& trial, const Triangle& nodes, const std::array<Vec3, 3>& corners) const {
+  const auto lifted = [&](const Trial& t, std::size_t k, Real sign) {
+    return t.corners[k] + sign * clearance_ * normal[t.nodes[k]];
+  };
+  const auto wall_meets = [&](const Trial& t, std::size_t k, const std::array<Vec3, 3>& other) {
+    const std::size_t l = (k + 1) % 3;
+    const Vec3 a = lifted(t, k, -1), b = lifted(t, l, -1), c = lifted(t, l, 1), d = lifted(t, k, 1);
+    return triangles_intersect({a, b, c}, other) || triangles_intersect({a, c, d}, other);
+  };
+  std::size_t shared = 0, mine = 0, its = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t l = 0; l < 3; ++l)
+      if (trial.nodes[k] == nodes[l]) ++shared, mine = k, its = l;
+  if (shared > 1) return false;
+  if (shared == 1)  // the edges opposite to the common node decide
+    return wall_meets(trial, (mine + 1) % 3, corners) || wall_meets({nodes, corners}, (its + 1) % 3, trial.corners);
+  for (const Real sign : {-1.0, 1.0})
+    if (triangles_intersect({lifted(trial, 0, sign), lifted(trial, 1, sign), lifted(trial, 2, sign)}, corners))
+      return true;
+  return wall_meets(trial, 0, corners) || wall_meets(trial, 1, corners) || wall_meets(trial, 2, corners);
+}
+
 bool SheetMesh::trial_is_clear(const Trial& trial, const SheetEdit& edit) {
   grid_.query(box_around(trial.corners, clearance_), candidates_);
   const Box tight = box_around(trial.corners, 0);
@@ -121,13 +144,7 @@ bool SheetMesh::trial_is_clear(const Trial& trial, const SheetEdit& edit) {
     const Triangle& n = triangles[t];
     const std::array<Vec3, 3> c{position[n[0]], position[n[1]], position[n[2]]};
     if (box_around(c, 0).overlaps(tight) && triangles_intersect(trial.nodes, trial.corners, n, c)) return false;
-    // Layers that face each other keep the slab's thickness between them; fronts that meet edge to edge may come close.
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = trial.nodes[k];
-      if (n[0] == v || n[1] == v || n[2] == v) continue;
-      const Vec3 gap = trial.corners[k] - closest_point_on_triangle(trial.corners[k], c[0], c[1], c[2]);
-      if (norm2(gap) < clearance_ * clearance_ && std::abs(dot(gap, normal[v])) > 0.7 * norm(gap)) return false;
-    }
+    if (crowds(trial, n, c)) return false;
   }
   return true;
 }
