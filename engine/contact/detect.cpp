@@ -14,6 +14,7 @@ constexpr Real kFarSide = 0.3;
 struct Proxy {
   Box box;         // world, unswept
   Real reach = 0;  // farthest any point moves in the step, m
+  Real turn = 0;   // the part of it by rotation
   Real diagonal = 0;
 };
 
@@ -26,12 +27,18 @@ Proxy make_proxy(const Body& body, const ContactCache::Bounds& bounds, Real dt) 
   Proxy p;
   p.box.low = centre - extent, p.box.high = centre + extent;
   p.diagonal = bounds.box.diagonal();
-  if (!body.fixed) p.reach = (norm(body.velocity) + norm(body.angular_velocity) * bounds.radius) * dt;
+  if (body.fixed) return p;
+  p.turn = norm(body.angular_velocity) * bounds.radius * dt;
+  p.reach = norm(body.velocity) * dt + p.turn;
   return p;
 }
 
-Real pair_margin(const Proxy& a, const Proxy& b, Real relative) {
-  return a.reach + b.reach + relative * std::min(a.diagonal, b.diagonal);
+// Gap that the step may close. Not by the relative velocity alone: of fragments flying together one may be stopped in
+// the step.
+Real pair_margin(const Body& a, const Body& b, const Proxy& pa, const Proxy& pb, const DetectOptions& options) {
+  const Vec3 va = a.fixed ? Vec3{} : a.velocity, vb = b.fixed ? Vec3{} : b.velocity;
+  return std::max({norm(va - vb), norm(va), norm(vb)}) * options.dt + pa.turn + pb.turn +
+         options.margin * std::min(pa.diagonal, pb.diagonal);
 }
 
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
@@ -58,7 +65,11 @@ std::vector<Pair> near_pairs(std::span<const Body> bodies, const std::vector<Pro
         return bodies[i].fixed || (!options.resting.empty() && options.resting[i] != 0);
       };
       if (!options.resting.empty() && rests(a) && rests(b)) continue;
-      if (grown[a].overlaps(grown[b])) pairs.emplace_back(a, b);
+      if (!grown[a].overlaps(grown[b])) continue;
+      const Real m = pair_margin(bodies[a], bodies[b], proxies[a], proxies[b], options);
+      Box box = proxies[a].box;
+      box.low -= Vec3{m, m, m}, box.high += Vec3{m, m, m};
+      if (box.overlaps(proxies[b].box)) pairs.emplace_back(a, b);
     }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
@@ -77,6 +88,37 @@ Placement between(const Body& from, const Body& to) {
   return p;
 }
 
+// Exact distances cost a microsecond each, and touching crack faces have hundreds of samples: where there are many,
+// each chunk sends the few that stand for its neighbourhood.
+constexpr std::size_t kFew = 64, kOfAChunk = 4;
+
+// Numbers of the samples the field does not reject, thinned.
+std::vector<std::uint32_t> rough_samples(const PointShell& shell, const SignedDistanceField& field,
+                                         const Placement& place, Real reject) {
+  std::vector<Contact> rough, chunk_rough;
+  std::vector<std::size_t> ends;
+  for (const PointShell::Chunk& chunk : shell.chunks) {
+    if (field.value(place.rotation * chunk.centre + place.shift) > reject + chunk.radius) continue;
+    for (std::uint32_t i = chunk.first; i < chunk.first + chunk.count; ++i) {
+      const Real value = field.value(place.rotation * shell.points[i] + place.shift);
+      if (value > reject) continue;
+      Contact c;
+      c.a = BodyId{i};
+      c.point = shell.points[i], c.normal = shell.normals[i], c.depth = -value;
+      rough.push_back(c);
+    }
+    ends.push_back(rough.size());
+  }
+  std::vector<std::uint32_t> samples;
+  for (std::size_t e = 0, first = 0; e < ends.size(); first = ends[e++]) {
+    chunk_rough.assign(rough.begin() + static_cast<std::ptrdiff_t>(first),
+                       rough.begin() + static_cast<std::ptrdiff_t>(ends[e]));
+    if (rough.size() > kFew) reduce_contacts(chunk_rough, kOfAChunk);
+    for (const Contact& c : chunk_rough) samples.push_back(c.a.value);
+  }
+  return samples;
+}
+
 // Shell of `owner` against the distance of `other`; contacts are named (a, b) as the pair, normals point from b to a.
 void shell_against_field(const Body& owner, const CollisionShape& shell_shape, const Body& other,
                          const CollisionShape& field_shape, Real margin, bool owner_is_a, std::vector<Contact>& found) {
@@ -84,24 +126,18 @@ void shell_against_field(const Body& owner, const CollisionShape& shell_shape, c
   const PointShell& shell = shell_shape.shell();
   const SignedDistanceField& field = field_shape.field();
   // The field may overestimate by one step between nodes.
-  const Real reject = margin + field.spacing();
-  for (const PointShell::Chunk& chunk : shell.chunks) {
-    if (field.value(place.rotation * chunk.centre + place.shift) > reject + chunk.radius) continue;
-    for (std::uint32_t i = chunk.first; i < chunk.first + chunk.count; ++i) {
-      const Vec3 p = place.rotation * shell.points[i] + place.shift;
-      const Real rough = field.value(p);
-      if (rough > reject) continue;
-      const CollisionShape::Nearest near = field_shape.nearest(p, std::max(margin, 2 * field.spacing() - rough));
-      if (!near.found || near.distance > margin) continue;
-      if (dot(place.rotation * shell.normals[i], near.normal) > kFarSide) continue;
-      const Vec3 n = rotate(other.pose.orientation, near.normal);
-      Contact c;
-      c.a = owner_is_a ? owner.id : other.id, c.b = owner_is_a ? other.id : owner.id;
-      c.point = to_world(other, 0.5 * (p + near.point));
-      c.normal = owner_is_a ? n : -n;
-      c.depth = -near.distance;
-      found.push_back(c);
-    }
+  for (const std::uint32_t i : rough_samples(shell, field, place, margin + field.spacing())) {
+    const Vec3 p = place.rotation * shell.points[i] + place.shift;
+    const CollisionShape::Nearest near = field_shape.nearest(p, std::max(margin, 2 * field.spacing() - field.value(p)));
+    if (!near.found || near.distance > margin) continue;
+    if (dot(place.rotation * shell.normals[i], near.normal) > kFarSide) continue;
+    const Vec3 n = rotate(other.pose.orientation, near.normal);
+    Contact c;
+    c.a = owner_is_a ? owner.id : other.id, c.b = owner_is_a ? other.id : owner.id;
+    c.point = to_world(other, 0.5 * (p + near.point));
+    c.normal = owner_is_a ? n : -n;
+    c.depth = -near.distance;
+    found.push_back(c);
   }
 }
 
@@ -165,7 +201,7 @@ void detect_contacts(std::span<const Body> bodies, const GroundPlane& ground, co
       ground_contacts(a, ground.height, proxies[i].reach + options.margin * proxies[i].diagonal, found[n]);
     } else {
       const Body& b = bodies[j];
-      const Real margin = pair_margin(proxies[i], proxies[j], options.margin);
+      const Real margin = pair_margin(a, b, proxies[i], proxies[j], options);
       const CollisionShape &sa = cache.shape(a), &sb = cache.shape(b);
       shell_against_field(a, sa, b, sb, margin, true, found[n]);
       shell_against_field(b, sb, a, sa, margin, false, found[n]);

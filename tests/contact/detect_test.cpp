@@ -76,10 +76,14 @@ TEST(Detect, GapsAreReportedOnlyWhenTheStepMayCloseThem) {
   bodies[1].velocity = {0, -6, 0};
   f.run(bodies);
   ASSERT_FALSE(f.contacts.empty());
+  // Samples beside the other box see its edge, 3 mm away at most; those above it the face.
+  std::size_t facing = 0;
   for (const Contact& c : f.contacts) {
-    EXPECT_NEAR(c.depth, -0.005, 1e-12);
-    EXPECT_NEAR(c.normal.y, -1, 1e-9);
+    EXPECT_LE(c.depth, -0.005 + 1e-12);
+    EXPECT_GE(c.depth, -std::hypot(0.005, 0.003, 0.002) - 1e-12);
+    if (c.depth > -0.005 - 1e-12 && c.normal.y < -1 + 1e-9) ++facing;
   }
+  EXPECT_GE(facing, 4u);
 }
 
 TEST(Detect, GroundContactsAreTheLowVertices) {
