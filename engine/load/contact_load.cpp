@@ -53,7 +53,7 @@ Real curvature_radius(const SurfaceMesh& mesh, const std::vector<std::uint32_t>&
 }
 
 BodyContact body_contact(const Body& body, const Body* other, const Contact& contact, Real radius_of_curvature,
-                         const LoadOptions& options) {
+                         const ContactLoadOptions& options) {
   const Real modulus = other ? effective_modulus(body.material.young, body.material.poisson, other->material.young,
                                                  other->material.poisson)
                              : effective_modulus(body.material.young, body.material.poisson, 0, 0);

@@ -8,7 +8,7 @@
 
 namespace sherd {
 
-struct LoadOptions {
+struct ContactLoadOptions {
   Real time_step = 1e-3;        // s
   Real duration = 0;            // s; 0: Hertz
   Real min_duration = 1e-3;     // s; lower bound of the Hertz time. The default is the time step: what the simulation resolves
@@ -28,7 +28,7 @@ struct BodyContact {
 // Slow contacts (the Hertz time grows like v^-1/5) never last longer than the step that carries their impulse needs: an
 // impulse of a resting contact is weight * time_step, so its duration is the time step.
 BodyContact body_contact(const Body& body, const Body* other, const Contact& contact, Real radius_of_curvature,
-                         const LoadOptions& options);
+                         const ContactLoadOptions& options);
 // Radius of curvature of the surface around a point, m: from the spread of the normals of the faces near it; never below
 // half the local edge length nor above the bounding-box diagonal (a flat face).
 Real curvature_radius(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh, const Vec3& point);

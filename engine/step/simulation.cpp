@@ -1,0 +1,382 @@
+#include "engine/step/simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+
+#include "engine/rigid/step.h"
+#include "engine/step/build_bodies.h"
+#include "engine/step/framing.h"
+#include "engine/step/inherit.h"
+#include "engine/step/stats.h"
+#include "engine/step/stopwatch.h"
+#include "kernels/core/parallel.h"
+
+namespace sherd {
+namespace {
+
+// A load this far below what a body can bear cannot break it; its stress is not solved. Estimates, not bounds: a wall of thickness
+// T = 2 V/A bears a bending force of order strength * T^2 (plates: 6 M / T^2 with M of order F / 2 pi), and no tension
+// exceeds the mean contact pressure by much away from it.
+constexpr Real kBendingShare = 0.05, kPressureShare = 0.5;
+
+// Meshes' dense operators kept at a time, bytes.
+constexpr std::size_t kOperatorBudget = std::size_t{3} << 30;
+
+Colour palette(std::size_t i) {
+  static const Colour colours[] = {{0.82f, 0.76f, 0.68f}, {0.62f, 0.72f, 0.74f}, {0.74f, 0.63f, 0.56f},
+                                   {0.66f, 0.70f, 0.60f}, {0.72f, 0.66f, 0.74f}, {0.78f, 0.72f, 0.55f}};
+  return colours[i % std::size(colours)];
+}
+Colour to_colour(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+std::size_t operator_bytes(const SurfaceMesh& mesh) { return 9 * mesh.vertex_count() * mesh.vertex_count() * sizeof(float); }
+
+}  // namespace
+
+struct Simulation::Impl {
+  // Beside each body, in the same order.
+  struct Companion {
+    std::shared_ptr<Solid> solid;
+    std::size_t scene_body = 0;
+    std::size_t last_solve = 0;  // step, for dropping operators
+    int fragments_named = 0;
+  };
+
+  Scene scene;
+  ThreadLimit threads;
+  std::vector<Body> bodies;
+  std::vector<Companion> companions;
+  GroundPlane ground;
+  RigidOptions rigid;
+  ContactCache cache;
+  RigidState rigid_state;
+  RunRecord record;
+  std::vector<Contact> contacts;
+  std::size_t steps = 0, frames_served = 0;
+  std::uint32_t next_id = 0;
+  std::int32_t next_crack = 0;
+  Frame last_frame;
+  std::vector<std::size_t> last_frame_roots;  // scene body of each body of last_frame
+  Box start_box;
+
+  Impl(const Scene& s, const SimulationOptions& options) : scene(s), threads(options.threads) {
+    record.scene = s.file.filename().string();
+    record.threads = options.threads;
+    const Stopwatch watch(record.prepare_seconds);
+    for (std::size_t i = 0; i < s.bodies.size(); ++i) {
+      BuiltBody built = build_body(s.bodies[i], BodyId{next_id++});
+      for (const std::string& m : built.messages) record.messages.push_back(built.body.name + ": " + m);
+      companions.push_back({std::make_shared<Solid>(built.body.mesh, built.edge_length, built.body.mass.volume), i, 0, 0});
+      bodies.push_back(std::move(built.body));
+    }
+    ground = {s.ground.enabled, s.ground.height, s.ground.restitution, s.ground.friction};
+    rigid.dt = s.time_step, rigid.gravity = s.gravity;
+    start_box = world_box();
+  }
+
+  Real time() const { return static_cast<Real>(steps) * scene.time_step; }
+
+  Box world_box() const {
+    Box box;
+    for (const Body& b : bodies)
+      for (std::size_t v = 0; v < b.mesh->vertex_count(); ++v) box.grow(to_world(b, b.mesh->vertices[v]));
+    return box;
+  }
+
+  ContactLoadOptions load_options() const {
+    ContactLoadOptions o;
+    o.time_step = scene.time_step;
+    o.duration = scene.contact.duration.value_or(0);
+    o.min_duration = scene.contact.min_duration;
+    o.patch_radius = scene.contact.patch_radius.value_or(0);
+    o.min_patch_radius = scene.contact.min_patch_radius;
+    return o;
+  }
+
+  const Body* find(BodyId id) const {
+    const auto it = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.id == id; });
+    return it == bodies.end() ? nullptr : &*it;
+  }
+
+  std::vector<BodyContact> loads_on(std::size_t i);
+  std::string reason_to_skip(std::size_t i, const std::vector<BodyContact>& loads) const;
+  FractureOptions fracture_options(std::size_t i) const;
+  bool fracture(std::size_t i, std::vector<BodyContact>&& loads, StepRecord& step);
+  void apply_shapes(std::size_t i, FractureResult& result, EventRecord& event);
+  void limit_operators();
+  void advance();
+};
+
+std::vector<BodyContact> Simulation::Impl::loads_on(std::size_t i) {
+  std::vector<BodyContact> loads;
+  const Body& body = bodies[i];
+  for (const Contact& c : contacts) {
+    if ((c.a != body.id && c.b != body.id) || norm2(c.impulse) == 0) continue;
+    const BodyId other = c.a == body.id ? c.b : c.a;
+    const Vec3 point = to_material(body, c.point);
+    Solid& solid = *companions[i].solid;
+    const Real radius = curvature_radius(solid.mesh(), solid.twins(), solid.bvh(), point);
+    loads.push_back(body_contact(body, other == kGround ? nullptr : find(other), c, radius, load_options()));
+  }
+  return loads;
+}
+
+std::string Simulation::Impl::reason_to_skip(std::size_t i, const std::vector<BodyContact>& loads) const {
+  const Body& body = bodies[i];
+  if (!scene.fracture.enabled) return "fracture is off";
+  if (body.fixed || !body.breakable) return "unbreakable";
+  if (body.generation >= scene.fracture.max_generation) return "last generation";
+  if (bodies.size() >= static_cast<std::size_t>(scene.fracture.max_fragments)) return "fragment limit";
+  if (companions[i].solid->mesh().triangle_count() < 20) return "too small";
+  Real force = 0, pressure = 0;
+  for (const BodyContact& c : loads) {
+    force += norm(c.force);
+    pressure = std::max(pressure, norm(c.force) / (std::numbers::pi * c.patch_radius * c.patch_radius));
+  }
+  const Real wall = 2 * body.mass.volume / surface_area(companions[i].solid->mesh());
+  if (force < kBendingShare * body.material.strength * wall * wall && pressure < kPressureShare * body.material.strength)
+    return "load below strength";
+  return {};
+}
+
+FractureOptions Simulation::Impl::fracture_options(std::size_t i) const {
+  const Body& body = bodies[i];
+  FractureOptions o;
+  o.elastic.krylov.tolerance = scene.solver.tolerance;
+  o.elastic.krylov.max_iterations = scene.solver.max_iterations;
+  o.strength = body.material.strength;
+  o.propagation_strength = body.material.propagation_strength;
+  // The default follows the scene body, not the fragment, so that all cracks of a body look alike.
+  o.thickness = body.material.crack_thickness > 0 ? body.material.crack_thickness : 1e-3 * std::cbrt(companions[i].solid->root_volume()) * 2;
+  o.speed = scene.fracture.speed;
+  o.max_cracks = scene.fracture.max_cracks;
+  o.max_pieces = static_cast<std::size_t>(scene.fracture.max_fragments) - bodies.size() + 1;
+  o.min_fragment_volume = scene.fracture.min_fragment_volume;
+  o.first_crack_id = next_crack;
+  return o;
+}
+
+void Simulation::Impl::apply_shapes(std::size_t i, FractureResult& result, EventRecord& event) {
+  const Body parent = bodies[i];
+  const Companion companion = companions[i];
+  const bool same_body = result.shapes.size() == 1;
+  std::vector<Body> fragments;
+  std::vector<Companion> solids;
+  for (std::size_t k = 0; k < result.shapes.size(); ++k) {
+    FragmentShape& shape = result.shapes[k];
+    Body b = parent;
+    b.mesh = shape.shown;
+    if (same_body) {
+      ++b.mesh_version;
+    } else {
+      b.id = BodyId{next_id++}, b.parent = parent.id, b.mesh_version = 0, ++b.generation;
+      b.name = fmt::format("{}_{}", parent.name, k);
+      event.new_bodies.push_back(b.id.value);
+    }
+    fragments.push_back(std::move(b));
+    const bool clean_kept = shape.clean == companion.solid->shared_mesh();
+    auto solid = clean_kept ? companion.solid
+                            : std::make_shared<Solid>(shape.clean, companion.solid->edge_length(), companion.solid->root_volume());
+    solid->partial = std::move(shape.partial);
+    solids.push_back({std::move(solid), companion.scene_body, 0, 0});
+  }
+  inherit_motion(parent, fragments);
+  const Momenta before = momenta(parent);
+  Momenta after;
+  for (const Body& f : fragments) {
+    const Momenta m = momenta(f);
+    after.mass += m.mass, after.linear += m.linear, after.angular += m.angular;
+  }
+  // Relative to the sizes of the terms that cancel, so that a body at rest does not divide by zero.
+  const Real size = start_box.diagonal(), speed = norm(parent.velocity) + size * norm(parent.angular_velocity) + 1e-12;
+  event.mass_error = std::abs(after.mass - before.mass) / before.mass;
+  event.momentum_error = norm(after.linear - before.linear) / (before.mass * speed);
+  event.angular_error = norm(after.angular - before.angular) / (before.mass * speed * (size + norm(parent.pose.position)));
+  bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(i));
+  companions.erase(companions.begin() + static_cast<std::ptrdiff_t>(i));
+  bodies.insert(bodies.begin() + static_cast<std::ptrdiff_t>(i), fragments.begin(), fragments.end());
+  companions.insert(companions.begin() + static_cast<std::ptrdiff_t>(i), solids.begin(), solids.end());
+}
+
+bool Simulation::Impl::fracture(std::size_t i, std::vector<BodyContact>&& loads, StepRecord& step) {
+  const Body& body = bodies[i];
+  Solid& solid = *companions[i].solid;
+  companions[i].last_solve = steps;
+  // Mass of the clean mesh, the one the load must balance on; its density makes up for the notches of the shown one.
+  MassProperties mass = mass_properties(solid.mesh(), 1);
+  const Real density = body.mass.mass / mass.volume;
+  mass.mass = body.mass.mass, mass.inertia *= density;
+  const Vec3 omega = rotate(conjugate(body.pose.orientation), body.angular_velocity);
+  const Elastic material{shear_modulus(body.material), body.material.poisson};
+  EventRecord event;
+  event.step = steps, event.time = time(), event.body = body.name, event.body_id = body.id.value;
+  event.result = fracture_solid(solid, mass, material, loads, omega, fracture_options(i));
+  event.contacts = std::move(loads);
+  for (const CrackRecord& c : event.result.cracks) next_crack = std::max(next_crack, c.id + 1);
+  next_crack += static_cast<std::int32_t>(event.result.shapes.size());  // ids used for stopped cracks that split a piece
+  ++step.solves, step.solver_iterations += static_cast<std::size_t>(event.result.krylov.iterations);
+  step.cracks += event.result.cracks.size();
+  const bool changed = event.result.changed;
+  if (changed) apply_shapes(i, event.result, event);
+  step.fragments += event.new_bodies.size();
+  event.result.shapes.clear();
+  record.events.push_back(std::move(event));
+  return changed;
+}
+
+// Frees the operators solved longest ago until the rest fits the budget.
+void Simulation::Impl::limit_operators() {
+  for (;;) {
+    std::size_t bytes = 0, oldest = companions.size();
+    for (std::size_t i = 0; i < companions.size(); ++i) {
+      if (!companions[i].solid->has_elastic()) continue;
+      bytes += operator_bytes(companions[i].solid->mesh());
+      if (oldest == companions.size() || companions[i].last_solve < companions[oldest].last_solve) oldest = i;
+    }
+    if (bytes <= kOperatorBudget || oldest == companions.size()) return;
+    companions[oldest].solid->drop_elastic();
+  }
+}
+
+void Simulation::Impl::advance() {
+  StepRecord step;
+  RigidStats stats;
+  {
+    const Stopwatch watch(step.rigid_seconds);
+    rigid_step(bodies, ground, rigid, cache, rigid_state, contacts, stats);
+  }
+  ++steps;
+  step.step = steps, step.time = time();
+  step.pairs_near = stats.contact.pairs_near, step.contacts = contacts.size(), step.fields_built = stats.contact.fields_built;
+  step.contact_iterations = stats.iterations, step.asleep = stats.asleep;
+  {
+    const Stopwatch watch(step.fracture_seconds);
+    // By id: bodies shift while fragments replace their parents, and fragments of this step carry no contact yet.
+    struct Due {
+      BodyId id;
+      std::vector<BodyContact> loads;
+    };
+    std::vector<Due> due;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      std::vector<BodyContact> loads = loads_on(i);
+      if (loads.empty()) {
+        ++step.skipped["no contact"];
+        continue;
+      }
+      if (const std::string reason = reason_to_skip(i, loads); !reason.empty())
+        ++step.skipped[reason];
+      else
+        due.push_back({bodies[i].id, std::move(loads)});
+    }
+    for (Due& d : due) {
+      const auto it = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.id == d.id; });
+      fracture(static_cast<std::size_t>(it - bodies.begin()), std::move(d.loads), step);
+    }
+    limit_operators();
+  }
+  step.bodies = bodies.size();
+  for (const Body& b : bodies) step.triangles += b.mesh->triangle_count();
+  record.steps.push_back(std::move(step));
+}
+
+Simulation::Simulation(const Scene& scene, const SimulationOptions& options) : impl_(std::make_unique<Impl>(scene, options)) {}
+Simulation::~Simulation() = default;
+
+bool Simulation::done() const { return impl_->time() >= impl_->scene.duration - 0.5 * impl_->scene.time_step; }
+void Simulation::step() { impl_->advance(); }
+Real Simulation::time() const { return impl_->time(); }
+
+std::size_t Simulation::frame_count() const {
+  return static_cast<std::size_t>(std::floor(impl_->scene.duration * impl_->scene.frame_rate + 1e-9)) + 1;
+}
+
+bool Simulation::frame_due() const {
+  const Real next = static_cast<Real>(impl_->frames_served) / impl_->scene.frame_rate;
+  return impl_->frames_served < frame_count() && impl_->time() >= next - 0.5 * impl_->scene.time_step;
+}
+
+Frame Simulation::snapshot() {
+  Frame frame;
+  frame.index = impl_->frames_served++;
+  frame.time = impl_->time();
+  impl_->last_frame_roots.clear();
+  for (std::size_t i = 0; i < impl_->bodies.size(); ++i) {
+    const Body& b = impl_->bodies[i];
+    const std::size_t scene_index = impl_->companions[i].scene_body;
+    const SceneBody& s = impl_->scene.bodies[scene_index];
+    impl_->last_frame_roots.push_back(scene_index);
+    FrameBody f;
+    f.id = b.id.value, f.name = b.name, f.mesh = b.mesh, f.mesh_version = b.mesh_version;
+    f.parent = b.parent == b.id ? kNone : b.parent.value;
+    f.rotation = to_matrix(b.pose.orientation);
+    f.translation = b.pose.position - f.rotation * b.mass.centre;
+    f.colour = s.colour ? to_colour(*s.colour) : palette(scene_index);
+    f.crack_colour = s.crack_colour ? to_colour(*s.crack_colour) : Colour{0.62f, 0.30f, 0.20f};
+    frame.bodies.push_back(std::move(f));
+  }
+  impl_->last_frame = frame;
+  return frame;
+}
+
+Frame Simulation::material_snapshot() const {
+  Frame frame = impl_->last_frame;
+  const std::size_t shown = impl_->scene.output.material_view.value_or(0);
+  frame.bodies.clear();
+  for (std::size_t i = 0; i < impl_->last_frame.bodies.size(); ++i) {
+    if (impl_->last_frame_roots[i] != shown) continue;
+    frame.bodies.push_back(impl_->last_frame.bodies[i]);
+    frame.bodies.back().rotation = Mat3::identity(), frame.bodies.back().translation = Vec3{};
+    frame.bodies.back().opacity = 0.35f;
+  }
+  return frame;
+}
+
+View Simulation::view() const {
+  const Scene& s = impl_->scene;
+  View v;
+  v.width = s.output.width, v.height = s.output.height, v.samples = s.output.samples;
+  v.field_of_view = s.camera.field_of_view, v.up = s.camera.up;
+  v.light = s.light.direction;
+  v.ground = s.ground.enabled, v.ground_height = s.ground.height;
+  if (!s.camera.automatic) {
+    v.eye = s.camera.eye, v.target = s.camera.target;
+    return v;
+  }
+  Box box = impl_->start_box;
+  if (s.ground.enabled) {  // and where they fall, with room for the pieces to spread
+    const Real size = box.diagonal();
+    box.low.y = std::min(box.low.y, s.ground.height);
+    const Vec3 c = box.centre();
+    box.grow(Vec3{c.x - 0.6 * size, s.ground.height, c.z - 0.4 * size});
+    box.grow(Vec3{c.x + 0.6 * size, s.ground.height, c.z + 0.4 * size});
+  }
+  return frame_box(box, v);
+}
+
+View Simulation::material_view() const {
+  View v;
+  v.width = impl_->scene.output.width, v.height = impl_->scene.output.height, v.samples = impl_->scene.output.samples;
+  v.light = impl_->scene.light.direction;
+  v.ground = false;
+  v.sky_colour = {0.93f, 0.94f, 0.95f};
+  Box box;
+  for (const FrameBody& b : material_snapshot().bodies) box.grow(bounding_box(*b.mesh));
+  return frame_box(box, v);
+}
+
+std::string Simulation::stats_json() const { return to_json(impl_->record); }
+std::vector<std::string> Simulation::messages() const { return impl_->record.messages; }
+
+std::string Simulation::status() const {
+  std::string text = fmt::format("t = {:.3f} s, {} bodies", impl_->time(), impl_->bodies.size());
+  if (!impl_->record.events.empty()) {
+    const EventRecord& e = impl_->record.events.back();
+    text += fmt::format(", last event {} at {:.3f} s: {:.3g} MPa", e.body, e.time, e.result.strongest.stress.value * 1e-6);
+  }
+  return text;
+}
+
+}  // namespace sherd
