@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -38,26 +37,6 @@ std::string read_file(const std::string& path) {
   return text;
 }
 
-// Binary STL states its count; assimp reads what is there of a shorter or an ascii file without complaint.
-void check_stl(const std::string& path, const std::string& content) {
-  const bool solid = content.compare(0, 5, "solid") == 0;
-  std::size_t promised = 0;
-  if (content.size() >= 84) {
-    const auto* u = reinterpret_cast<const unsigned char*>(content.data()) + 80;
-    promised = u[0] + 256u * u[1] + 65536u * u[2] + 16777216u * std::size_t{u[3]};
-  }
-  if (content.size() >= 84 && content.size() == 84 + 50 * promised) return;
-  if (solid && content.find("facet") != std::string::npos) {
-    if (content.find("endsolid") == std::string::npos)
-      throw InputError(fmt::format("{}: the ascii STL file is truncated (no 'endsolid'); export it again", path));
-    return;
-  }
-  if (content.size() < 84 + 50 * promised || promised == 0)
-    throw InputError(
-        fmt::format("{}: the STL file is truncated: {} triangles need {} bytes, it has {}; export it again", path,
-                    promised, 84 + 50 * promised, content.size()));
-}
-
 SurfaceMesh read_any(const std::string& path, std::vector<std::string>& messages) {
   const std::string ending = lower_ending(path);
   const char* const known[] = {".obj", ".ply", ".stl", ".gltf", ".glb", ".3ds"};
@@ -68,6 +47,8 @@ SurfaceMesh read_any(const std::string& path, std::vector<std::string>& messages
   if (ending == ".obj") return read_obj(path, content);
   if (ending == ".ply") return read_ply(path, content);
   if (ending == ".stl") check_stl(path, content);
+  if (ending == ".gltf") check_gltf(path, content);
+  if (ending == ".glb") check_glb(path, content);
   return read_assimp(path, messages);
 }
 

@@ -53,13 +53,22 @@ struct Collector {
   }
 };
 
+// assimp quotes the rest of the file in some messages.
+std::string one_line(std::string text) {
+  if (text.size() > 160) text = text.substr(0, 160) + "...";
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) > '~') c = ' ';
+  return text;
+}
+
 }  // namespace
 
 SurfaceMesh read_assimp(const std::string& path, std::vector<std::string>& messages) {
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr)
-    throw InputError(fmt::format("{}: cannot be read ({}); export the file again", path, importer.GetErrorString()));
+    throw InputError(
+        fmt::format("{}: cannot be read ({}); export the file again", path, one_line(importer.GetErrorString())));
   if ((scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0)
     throw InputError(fmt::format("{}: the file is incomplete; export it again", path));
   Collector collector{*scene, path, {}, 0};

@@ -13,6 +13,11 @@ SurfaceMesh read_ply(const std::string& path, const std::string& content);
 SurfaceMesh read_obj(const std::string& path, const std::string& content);
 SurfaceMesh read_assimp(const std::string& path, std::vector<std::string>& messages);
 
+// Throw InputError for files whose stated sizes do not fit their bytes.
+void check_stl(const std::string& path, const std::string& content);
+void check_gltf(const std::string& path, const std::string& content);
+void check_glb(const std::string& path, const std::string& content);
+
 // Parses a whole token; false when it is no number. "nan" and "inf" parse.
 bool parse_number(std::string_view token, double& value);
 bool parse_number(std::string_view token, long long& value);

@@ -270,7 +270,15 @@ TEST_F(Load, TruncatedFilesAreRefused) {
       put("ascii.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"),
       "truncated");
   const std::string gltf = gltf_of(box, "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]");
-  expect_refused(put("cut.gltf", gltf.substr(0, gltf.size() / 2)), "cannot be read");
+  expect_refused(put("cut.gltf", gltf.substr(0, gltf.size() / 2)), "its JSON text is damaged or truncated");
+  std::string wild = gltf;
+  wild.replace(wild.find("\"count\":26"), 10, "\"count\":99999999");
+  expect_refused(put("wild.gltf", wild), "more than its buffer view holds");
+  std::string glb("glTF\2\0\0\0", 8);
+  glb += bytes(std::uint32_t{1000}) + bytes(std::uint32_t{4}) + "JSON{}  ";
+  expect_refused(put("cut.glb", glb), "truncated: 24 of 1000 bytes");
+  expect_refused(put("apart.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":8,"uri":"gone.bin"}]})"),
+                 "gone.bin");
   // A count no file of this size can hold must not be believed (nor allocated).
   expect_refused(
       put("huge.ply",
