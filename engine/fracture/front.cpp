@@ -11,7 +11,7 @@ namespace {
 // expensive field is asked more often than the mesh resolves) nor so long that a bend is missed.
 constexpr Real kMinStep = 0.4, kMaxStep = 0.8;
 constexpr Real kMinTurnCosine = 0.5;  // a crack turns by at most 60 degrees a step: eigenvectors swap at equal values
-constexpr Real kSteerRange = 5.0;     // of h: fronts that face each other closer than this bend towards each other
+constexpr Real kSteerRange = 9.0;     // of h: fronts that face each other closer than this bend towards each other
 constexpr Real kSteerFull = 1.5;      // of h: here they head straight for each other
 constexpr std::size_t kSteerLoopDistance = 5;
 constexpr Real kAheadFactor = 1.5;  // of h: paper 6.3 (b), smoothness: a node this far behind both neighbours follows

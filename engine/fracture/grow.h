@@ -1,5 +1,5 @@
-// Crack growth (paper 6.3, algorithms 2 and 3; the design's O1-O8): from a seed on the surface to a sheet that is complete
-// (its whole border lies outside the body) or arrested.
+// Crack growth (paper 6.3, algorithms 2 and 3; the design's O1-O8): from a seed on the surface to a sheet that is
+// complete (its whole border lies outside the body) or arrested.
 #pragma once
 #include <string>
 
@@ -10,8 +10,8 @@
 namespace sherd {
 
 struct CrackSeed {
-  Vec3 position;    // on the surface, material space
-  Vec3 normal;      // outward unit surface normal there
+  Vec3 position;  // on the surface, material space
+  Vec3 normal;    // outward unit surface normal there
   PrincipalStress stress;
   std::uint32_t vertex = kNone;  // mesh vertex it came from
 };
@@ -32,8 +32,8 @@ struct GrowthResult {
   CrackSheet sheet;
   int ladder_level = 0;  // 0: the true field; 1..4: blended towards the seed's plane (O8)
   int steps = 0;
-  Real area = 0;         // of the sheet part inside the body, m^2
-  std::string reason;    // of a rejection or failure; with ladder_level > 0 also why the true field failed
+  Real area = 0;       // of the sheet part inside the body, m^2
+  std::string reason;  // of a rejection or failure; with ladder_level > 0 also why the true field failed
 };
 
 // `body` must describe a valid mesh. Never throws for geometric trouble: the outcome says what happened. Deterministic.

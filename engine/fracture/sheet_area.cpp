@@ -3,7 +3,8 @@
 namespace sherd {
 namespace {
 
-constexpr int kMaxDepth = 4;
+constexpr int kMaxDepth = 5;
+constexpr Real kFlatCosine = 0.8;  // a line clips well where the surface turns by less than 37 degrees
 
 struct Corner {
   Vec3 p;
@@ -18,12 +19,15 @@ Real triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
 struct Crossings {
   std::size_t count = 0;
   Real first = 0;
+  Vec3 normal;  // of the body at the first one
 };
 
 Crossings crossings(const TriangleBvh& body, const Vec3& a, const Vec3& b) {
   std::vector<TriangleBvh::Hit> hits;
   body.all_hits(a, b - a, 0, 1, hits);
-  return {hits.size(), hits.empty() ? 0 : hits.front().t};
+  if (hits.empty()) return {};
+  const auto& t = body.corners(hits.front().face);
+  return {hits.size(), hits.front().t, normalized(cross(t[1] - t[0], t[2] - t[0]))};
 }
 
 Real area_inside(const TriangleBvh& body, const Corner& a, const Corner& b, const Corner& c, int depth) {
@@ -43,8 +47,9 @@ Real area_inside(const TriangleBvh& body, const Corner& a, const Corner& b, cons
   if (simple && depth > 0) {
     int lone = 0;  // the corner on its own side
     while (corner[lone].inside != (inside == 1)) ++lone;
-    const Real s = cross_[lone].first, t = 1 - cross_[(lone + 2) % 3].first;
-    return inside == 1 ? s * t * whole : (1 - s * t) * whole;
+    const Crossings &out = cross_[lone], &in = cross_[(lone + 2) % 3];
+    const Real part = out.first * (1 - in.first) * whole;
+    if (dot(out.normal, in.normal) > kFlatCosine) return inside == 1 ? part : whole - part;
   }
   if (depth >= kMaxDepth) return body.inside((a.p + b.p + c.p) / 3.0) ? whole : 0;
   const auto middle = [&](const Corner& p, const Corner& q) {

@@ -112,6 +112,21 @@ bool SheetMesh::trial_is_sound(const Trial& trial) const {
   return dot(n, mean) > 0;
 }
 
+// A quick certain no for crowds(): the triangle is beyond one edge of the trial within its plane, or far above or
+// below.
+bool SheetMesh::lies_aside(const Trial& trial, const std::array<Vec3, 3>& corners) const {
+  const auto& c = trial.corners;
+  const Vec3 n = normalized(cross(c[1] - c[0], c[2] - c[0]));
+  const auto all = [&](const Vec3& direction, const Vec3& from, Real beyond) {
+    for (const Vec3& p : corners)
+      if (dot(p - from, direction) < beyond) return false;
+    return true;
+  };
+  for (std::size_t k = 0; k < 3; ++k)
+    if (all(normalized(cross(c[(k + 1) % 3] - c[k], n)), c[k], -1e-9 * edge_)) return true;
+  return all(n, c[0], clearance_) || all(-n, c[0], clearance_);
+}
+
 // Layers that lie over each other keep the clearance between them, so that the slab does not meet itself; in a constant
 // field arms that overlap are coplanar to rounding and only this sees it. Fronts that meet edge to edge may come close.
 bool SheetMesh::crowds(const Trial& trial, const Triangle& nodes, const std::array<Vec3, 3>& corners) const {
@@ -127,7 +142,7 @@ bool SheetMesh::crowds(const Trial& trial, const Triangle& nodes, const std::arr
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t l = 0; l < 3; ++l)
       if (trial.nodes[k] == nodes[l]) ++shared, mine = k, its = l;
-  if (shared > 1) return false;
+  if (shared > 1 || lies_aside(trial, corners)) return false;
   if (shared == 1)  // the edges opposite to the common node decide
     return wall_meets(trial, (mine + 1) % 3, corners) || wall_meets({nodes, corners}, (its + 1) % 3, trial.corners);
   for (const Real sign : {-1.0, 1.0})

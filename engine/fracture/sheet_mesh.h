@@ -73,6 +73,7 @@ class SheetMesh {
   bool make_trials(const SheetEdit& edit);
   bool trial_is_sound(const Trial& trial) const;
   bool trial_is_clear(const Trial& trial, const SheetEdit& edit);
+  bool lies_aside(const Trial& trial, const std::array<Vec3, 3>& corners) const;
   bool crowds(const Trial& trial, const Triangle& nodes, const std::array<Vec3, 3>& corners) const;
   bool hidden(std::uint32_t t, const SheetEdit& edit) const;
   Box box_of(std::uint32_t t) const;

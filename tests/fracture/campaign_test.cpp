@@ -70,11 +70,13 @@ Tally campaign(const std::string& name, const Specimen& body, std::uint64_t seed
     for (const int until = tally.jobs + jobs_per_field; tally.jobs < until && tally.rejected < 1000;)
       run_job(body, kind, random, tally);
   }
-  fmt::print("{:14} faces {:6} jobs {:4} level0 {:4} dropped {:2} invalid {} complete {:4} arrested {:3} rejected {:3} ms {:6.1f} "
-             "stress points {:6.0f}\n",
-             name, body.mesh.triangle_count(), tally.jobs, tally.level0, tally.dropped, tally.invalid, tally.complete,
-             tally.arrested, tally.rejected, 1e3 * tally.seconds / tally.jobs,
-             static_cast<double>(tally.evaluations) / tally.jobs);
+  fmt::print(
+      "{:14} faces {:6} jobs {:4} level0 {:4} dropped {:2} invalid {} complete {:4} arrested {:3} rejected {:3} ms "
+      "{:6.1f} "
+      "stress points {:6.0f}\n",
+      name, body.mesh.triangle_count(), tally.jobs, tally.level0, tally.dropped, tally.invalid, tally.complete,
+      tally.arrested, tally.rejected, 1e3 * tally.seconds / tally.jobs,
+      static_cast<double>(tally.evaluations) / tally.jobs);
   return tally;
 }
 
