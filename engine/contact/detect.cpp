@@ -90,7 +90,7 @@ Placement between(const Body& from, const Body& to) {
 
 // Exact distances cost a microsecond each, and touching crack faces have hundreds of samples: where there are many,
 // each chunk sends the few that stand for its neighbourhood.
-constexpr std::size_t kFew = 64, kOfAChunk = 4;
+constexpr std::size_t kFew = 64, kOfAChunk = 4, kOfAShell = 32;
 
 // Numbers of the samples the field does not reject, thinned.
 std::vector<std::uint32_t> rough_samples(const PointShell& shell, const SignedDistanceField& field,
@@ -109,13 +109,19 @@ std::vector<std::uint32_t> rough_samples(const PointShell& shell, const SignedDi
     }
     ends.push_back(rough.size());
   }
-  std::vector<std::uint32_t> samples;
-  for (std::size_t e = 0, first = 0; e < ends.size(); first = ends[e++]) {
-    chunk_rough.assign(rough.begin() + static_cast<std::ptrdiff_t>(first),
-                       rough.begin() + static_cast<std::ptrdiff_t>(ends[e]));
-    if (rough.size() > kFew) reduce_contacts(chunk_rough, kOfAChunk);
-    for (const Contact& c : chunk_rough) samples.push_back(c.a.value);
+  if (rough.size() > kFew) {
+    std::vector<Contact> thinned;
+    for (std::size_t e = 0, first = 0; e < ends.size(); first = ends[e++]) {
+      chunk_rough.assign(rough.begin() + static_cast<std::ptrdiff_t>(first),
+                         rough.begin() + static_cast<std::ptrdiff_t>(ends[e]));
+      reduce_contacts(chunk_rough, kOfAChunk);
+      thinned.insert(thinned.end(), chunk_rough.begin(), chunk_rough.end());
+    }
+    reduce_contacts(thinned, kOfAShell);
+    rough.swap(thinned);
   }
+  std::vector<std::uint32_t> samples;
+  for (const Contact& c : rough) samples.push_back(c.a.value);
   return samples;
 }
 
@@ -125,8 +131,8 @@ void shell_against_field(const Body& owner, const CollisionShape& shell_shape, c
   const Placement place = between(owner, other);
   const PointShell& shell = shell_shape.shell();
   const SignedDistanceField& field = field_shape.field();
-  // The field may overestimate by one step between nodes.
-  for (const std::uint32_t i : rough_samples(shell, field, place, margin + field.spacing())) {
+  // Between nodes the field overestimates by little, except at the other's tips, and those are in the other's shell.
+  for (const std::uint32_t i : rough_samples(shell, field, place, margin + 0.5 * field.spacing())) {
     const Vec3 p = place.rotation * shell.points[i] + place.shift;
     const CollisionShape::Nearest near = field_shape.nearest(p, std::max(margin, 2 * field.spacing() - field.value(p)));
     if (!near.found || near.distance > margin) continue;

@@ -164,7 +164,8 @@ SignedDistanceField::SignedDistanceField(const SurfaceMesh& mesh, const Triangle
   SHERD_CHECK(is_finite(box.low) && is_finite(box.high) && box.diagonal() > 0,
               "a distance field needs a finite, extended mesh");
   const Grid g = make_grid(box, field_spacing(mesh, options));
-  origin_ = g.origin, h_ = g.h;
+  origin_ = g.origin, h_ = g.h, inverse_h_ = 1 / g.h;
+  high_ = g.node(g.n[0] - 1, g.n[1] - 1, g.n[2] - 1);
   std::copy(g.n, g.n + 3, n_);
   std::vector<Real> d2(g.count(), std::numeric_limits<Real>::infinity());
   std::vector<std::uint32_t> face(g.count(), kNone);
@@ -180,21 +181,12 @@ SignedDistanceField::SignedDistanceField(const SurfaceMesh& mesh, const Triangle
   });
 }
 
-Box SignedDistanceField::box() const {
-  Box b;
-  b.low = origin_;
-  b.high =
-      origin_ + Vec3{static_cast<Real>(n_[0] - 1), static_cast<Real>(n_[1] - 1), static_cast<Real>(n_[2] - 1)} * h_;
-  return b;
-}
-
 Vec3 SignedDistanceField::clamp(const Vec3& p) const {
-  const Box b = box();
-  return min(max(p, b.low), b.high);
+  return min(max(p, origin_), high_);
 }
 
 SignedDistanceField::Cell SignedDistanceField::locate(const Vec3& clamped) const {
-  const Vec3 s = (clamped - origin_) / h_;
+  const Vec3 s = (clamped - origin_) * inverse_h_;
   std::size_t i[3];
   Vec3 f;
   for (int k = 0; k < 3; ++k) {

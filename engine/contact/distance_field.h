@@ -31,7 +31,7 @@ class SignedDistanceField {
   Vec3 gradient(const Vec3& p) const;
   Real spacing() const { return h_; }
   std::size_t node_count() const { return values_.size(); }
-  Box box() const;
+  Box box() const { return {origin_, high_}; }
 
  private:
   struct Cell {
@@ -41,8 +41,8 @@ class SignedDistanceField {
   Cell locate(const Vec3& clamped) const;
   Vec3 clamp(const Vec3& p) const;
 
-  Vec3 origin_;
-  Real h_ = 1;
+  Vec3 origin_, high_;  // corners of the grid
+  Real h_ = 1, inverse_h_ = 1;
   std::size_t n_[3] = {0, 0, 0};  // nodes; x fastest
   std::vector<float> values_;
 };
