@@ -1,6 +1,8 @@
 #include "engine/mesh/remesh.h"
 
+#include <limits>
 #include <numbers>
+#include <queue>
 
 #include "engine/mesh/intersections.h"
 #include "engine/mesh/remesh_work.h"
@@ -52,6 +54,45 @@ void measure(const SurfaceMesh& in, const SurfaceMesh& out, RemeshReport& report
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> lock_good_regions(const SurfaceMesh& mesh, Real edge_length, Real distance_limit) {
+  constexpr Real kPoor = 15 * std::numbers::pi / 180;
+  const std::size_t n = mesh.vertex_count();
+  std::vector<Real> away(n, std::numeric_limits<Real>::infinity());
+  // Dijkstra along edges from the corners of poor faces.
+  using Entry = std::pair<Real, std::uint32_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  std::vector<std::uint32_t> first(n + 1, 0), neighbour(3 * mesh.triangle_count());
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) ++first[v + 1];
+  for (std::size_t v = 0; v < n; ++v) first[v + 1] += first[v];
+  std::vector<std::uint32_t> fill(first.begin(), first.end() - 1);
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    bool poor = smallest_angle({mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)}) < kPoor;
+    for (int k = 0; k < 3; ++k) {
+      const Real length = distance(mesh.corner(t, k), mesh.corner(t, (k + 1) % 3));
+      poor = poor || length < 0.5 * edge_length || length > 1.6 * edge_length;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh.triangles[t][k];
+      neighbour[fill[v]++] = mesh.triangles[t][(k + 1) % 3];
+      if (poor && away[v] > 0) away[v] = 0, queue.emplace(0, v);
+    }
+  }
+  while (!queue.empty()) {
+    const auto [d, v] = queue.top();
+    queue.pop();
+    if (d > away[v]) continue;
+    for (std::uint32_t i = first[v]; i < first[v + 1]; ++i) {
+      const std::uint32_t w = neighbour[i];
+      const Real dw = d + distance(mesh.vertices[v], mesh.vertices[w]);
+      if (dw <= distance_limit && dw < away[w]) away[w] = dw, queue.emplace(dw, w);
+    }
+  }
+  std::vector<std::uint8_t> locked(n);
+  for (std::size_t v = 0; v < n; ++v) locked[v] = away[v] > distance_limit ? 1 : 0;
+  return locked;
+}
 
 RemeshReport remesh(const SurfaceMesh& in, const RemeshOptions& options, SurfaceMesh& out) {
   check(in, options);

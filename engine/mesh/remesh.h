@@ -39,4 +39,9 @@ struct RemeshReport {
 // InputError for options out of range.
 RemeshReport remesh(const SurfaceMesh& in, const RemeshOptions& options, SurfaceMesh& out);
 
+// Lock flags that leave alone what is good already: nonzero for vertices farther than `distance` (metres, along edges)
+// from every face with an angle below 15 degrees or an edge outside [0.5, 1.6] edge_length. A fragment remeshed with
+// them changes near its new walls only, and its volume and untouched faces stay what they were.
+std::vector<std::uint8_t> lock_good_regions(const SurfaceMesh& mesh, Real edge_length, Real distance);
+
 }  // namespace sherd

@@ -66,13 +66,14 @@ void Remesher::collapse_patch(std::uint32_t h, Patch& before, Patch& after) cons
   }
 }
 
-bool Remesher::normal_agrees(const NewFace& after, const std::array<Vec3, 3>& before) const {
+bool Remesher::normal_agrees(const NewFace& after, const std::array<Vec3, 3>& before, bool repairing) const {
   const Vec3 n = area_normal(after.corner), o = area_normal(before);
   const Real ln = norm(n), lo = norm(o);
   if (!(ln > 0)) return false;
-  if (lo > kSliver * longest2(before)) return dot(n, o) > kCosTurn * ln * lo;
-  // A sliver: ask the input surface, and the old normal only not to be reversed where it means anything.
-  if (lo > 1e-9 * longest2(before) && dot(n, o) <= 0) return false;
+  const Real l2 = longest2(before);
+  if (lo > kSliver * l2 && !(repairing && lo * lo < kTiny * kTiny * h_ * h_ * l2))
+    return dot(n, o) > kCosTurn * ln * lo;
+  // A sliver, or (in repair) a face thinner than anything the target length can show: ask the input surface.
   const Vec3 centre = (after.corner[0] + after.corner[1] + after.corner[2]) / 3.0;
   const std::uint32_t f = after.face;
   const auto found = project(centre, {0, 0, 0}, mesh_.faces.kind[f], mesh_.faces.crack[f]);
@@ -81,9 +82,9 @@ bool Remesher::normal_agrees(const NewFace& after, const std::array<Vec3, 3>& be
   return dot(n, m) > 0.5 * ln * norm(m);
 }
 
-bool Remesher::turns_little(const Patch& before, const Patch& after) const {
+bool Remesher::turns_little(const Patch& before, const Patch& after, bool repairing) const {
   for (std::size_t i = 0; i < after.size(); ++i)
-    if (!normal_agrees(after[i], before[i].corner)) return false;
+    if (!normal_agrees(after[i], before[i].corner, repairing)) return false;
   const Real fold = worst_fold(after);
   return fold > kCosFold || fold >= worst_fold(before);
 }
@@ -121,12 +122,16 @@ bool Remesher::clear(const Patch& after, const std::vector<std::uint32_t>& repla
 
 // Faces around the two ends look in opposite directions: the edge spans a thin sheet.
 bool Remesher::pinches_a_sheet(std::uint32_t h) const {
+  // Faces about to vanish say nothing.
+  const auto normal = [&](std::uint32_t t) {
+    const auto c = mesh_.corners(t);
+    const Vec3 n = area_normal(c);
+    return norm2(n) > kTiny * kTiny * h_ * h_ * longest2(c) ? normalized(n) : Vec3{};
+  };
   bool pinches = false;
   mesh_.for_out(mesh_.from(h), [&](std::uint32_t x) {
-    const Vec3 n = normalized(area_normal(mesh_.corners(x / 3)));
-    mesh_.for_out(mesh_.to(h), [&](std::uint32_t y) {
-      pinches = pinches || dot(n, normalized(area_normal(mesh_.corners(y / 3)))) < -0.7;
-    });
+    const Vec3 n = normal(x / 3);
+    mesh_.for_out(mesh_.to(h), [&](std::uint32_t y) { pinches = pinches || dot(n, normal(y / 3)) < -0.7; });
   });
   return pinches;
 }
@@ -157,8 +162,10 @@ bool Remesher::try_collapse(std::uint32_t h, bool repairing) {
     replaced_.push_back(before_[i].face);
   }
   if (!repairing && new_longest > limit * limit && new_longest > old_longest) return false;
-  if (new_angle < kPoorAngle && new_angle <= old_angle) return false;
-  if (!turns_little(before_, after_) || !clear(after_, replaced_)) return false;
+  // In a cluster of tiny edges the first collapses cannot improve the angle yet; each still removes a vertex.
+  const bool tiny = repairing && distance(mesh_.position[a], mesh_.position[b]) < kTiny * h_;
+  if (new_angle < kPoorAngle && new_angle <= (tiny ? 0.3 : 1.0) * old_angle) return false;
+  if (!turns_little(before_, after_, repairing) || !clear(after_, replaced_)) return false;
   // A vertex that joins two lines, or a line it was not part of, becomes a fixed one.
   const bool along = mesh_.line[h] != kNone && mesh_.line[h] == features_.line[a];
   if (features_.role[a] != VertexRole::kFree && !along) features_.role[b] = VertexRole::kFixed;
@@ -179,7 +186,7 @@ bool Remesher::try_split(std::uint32_t h, const Vec3& p, Real arc) {
         {{m, x, y}, {p, mesh_.position[x], mesh_.position[y]}, face, mesh_.line[h] != kNone && k % 2 == 0});
     before_.push_back(after_.back());
     before_.back().corner = mesh_.corners(face);
-    if (!normal_agrees(after_[k], before_[k].corner)) return false;
+    if (!normal_agrees(after_[k], before_[k].corner, false)) return false;
   }
   replaced_.assign({h / 3, t / 3});
   if (!clear(after_, replaced_)) return false;
@@ -226,7 +233,7 @@ bool Remesher::try_move(std::uint32_t v, const Vec3& p) {
     new_angle = std::min(new_angle, smallest_angle(after_[i].corner));
   }
   if (new_angle < 3 * kPoorAngle && new_angle < old_angle) return false;
-  if (!turns_little(before_, after_) || !clear(after_, replaced_)) return false;
+  if (!turns_little(before_, after_, false) || !clear(after_, replaced_)) return false;
   mesh_.position[v] = p;
   for (const NewFace& f : after_) tree_.update(mesh_, f.face);
   ++report_.moves;

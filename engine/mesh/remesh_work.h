@@ -53,8 +53,8 @@ class Remesher {
   bool pinches_a_sheet(std::uint32_t h) const;
   void ring(std::uint32_t v, Patch& patch) const;
   void collapse_patch(std::uint32_t h, Patch& before, Patch& after) const;
-  bool turns_little(const Patch& before, const Patch& after) const;
-  bool normal_agrees(const NewFace& after, const std::array<Vec3, 3>& before) const;
+  bool turns_little(const Patch& before, const Patch& after, bool repairing) const;
+  bool normal_agrees(const NewFace& after, const std::array<Vec3, 3>& before, bool repairing) const;
   Real worst_fold(const Patch& patch) const;
   bool clear(const Patch& after, const std::vector<std::uint32_t>& replaced);
   bool locked(std::uint32_t v) const { return v < locked_.size() && locked_[v] != 0; }
