@@ -1,5 +1,6 @@
 #include "engine/mesh/repair.h"
 
+#include "engine/mesh/intersections.h"
 #include "engine/mesh/repair_steps.h"
 #include "engine/mesh/validate.h"
 #include "kernels/core/error.h"
@@ -26,6 +27,8 @@ class Repair {
 
   void run() {
     refuse_raw();
+    mesh_.faces.resize(mesh_.triangle_count());
+    if (needs_nothing()) return;
     tidy();
     refuse_nonmanifold_edges();
     make_oriented();
@@ -52,8 +55,15 @@ class Repair {
         if (v >= mesh_.vertex_count())
           refuse(fmt::format("triangle {} uses vertex {} of {}; export the mesh again", t, v, mesh_.vertex_count()));
   }
+  // The common case at the cost of one look.
+  bool needs_nothing() {
+    const MeshReport r = report_mesh(mesh_);
+    if (!is_valid(r) || r.needle_triangles > 0 || r.unused_vertices > 0) return false;
+    if (options_.check_self_intersections && count_self_intersections(mesh_, 1) > 0) return false;
+    mention_small_pieces(r);
+    return true;
+  }
   void tidy() {
-    mesh_.faces.resize(mesh_.triangle_count());
     if (const std::size_t n = drop_repeated_vertex_triangles(mesh_); n > 0)
       say(fmt::format("dropped {} triangle{} with a repeated vertex", n, plural(n)));
     if (const std::size_t n = drop_unused_vertices(mesh_); n > 0)
