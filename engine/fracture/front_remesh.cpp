@@ -22,6 +22,13 @@ std::uint32_t split_border_edge(Growth& g, std::uint32_t a, std::uint32_t b, con
   return g.sheet.apply({{t}, {{a, m, c}, {m, b, c}}, kNone, {}}) ? m : kNone;
 }
 
+// Exited nodes that stayed too near the surface, because the sheet was in the way when they left, try again.
+bool push_again(Growth& g, std::uint32_t v) {
+  const Vec3 p = g.sheet.position[v], way = push_out(g, p, g.sheet.normal[v]) - p;
+  if (norm(way) < 1e-2 * g.h) return false;
+  return g.sheet.move(v, p + way) || g.sheet.move(v, p + 0.5 * way);
+}
+
 // The coverage rule makes corners, sharp edges and concavities separate: a front edge between two exited nodes that
 // still cuts through the body is refined and pushed on until the border lies wholly outside.
 bool split_edge(Growth& g, FrontLoop& loop, std::size_t i) {
@@ -29,13 +36,17 @@ bool split_edge(Growth& g, FrontLoop& loop, std::size_t i) {
   const Vec3 pa = g.sheet.position[a], pb = g.sheet.position[b], middle = 0.5 * (pa + pb);
   const Real length = distance(pa, pb);
   const bool exited = is_exited(g, a) && is_exited(g, b);
-  if (exited ? !(length > kCover * g.h) || is_clear(g, a, b) : !(length > kSplit * g.h)) return false;
+  if (exited ? is_clear(g, a, b) : !(length > kSplit * g.h)) return false;
+  if (exited && (push_again(g, a) || push_again(g, b))) return true;
+  if (exited && !(length > kCover * g.h)) return false;
   const bool outside = !g.body.inside(middle);
   NodeState state = NodeState::kActive;
   std::uint32_t m = kNone;
   if (outside) {
     state = NodeState::kExited;
-    m = split_border_edge(g, a, b, push_out(g, middle, normalized(g.sheet.normal[a] + g.sheet.normal[b])), state);
+    const Vec3 way = push_out(g, middle, normalized(g.sheet.normal[a] + g.sheet.normal[b])) - middle;
+    for (Real part = 1; part > 0.2 && m == kNone; part *= 0.5)
+      m = split_border_edge(g, a, b, middle + part * way, state);
   } else if (g.sheet.state[a] == g.sheet.state[b] && g.sheet.state[a] == NodeState::kBlocked) {
     state = NodeState::kBlocked;
   }
