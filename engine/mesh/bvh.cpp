@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "kernels/core/expansion.h"
+
 namespace sherd {
 namespace {
 
@@ -32,6 +34,38 @@ bool ray_hits_box(const Box& b, const Vec3& o, const Vec3& inverse, Real t0, Rea
     t0 = std::max(t0, a - slack), t1 = std::min(t1, c + slack);
   }
   return t0 <= t1;
+}
+
+// Exact sign of d . ((p - o) x (q - o)).
+int exact_side(const Vec3& o, const Vec3& d, const Vec3& p, const Vec3& q) {
+  Expansion u[3], v[3];
+  for (int k = 0; k < 3; ++k) u[k] = Expansion::difference(p[k], o[k]), v[k] = Expansion::difference(q[k], o[k]);
+  const Expansion sum = (u[1] * v[2] - u[2] * v[1]) * d.x + (u[2] * v[0] - u[0] * v[2]) * d.y;
+  return (sum + (u[0] * v[1] - u[1] * v[0]) * d.z).sign();
+}
+
+// A line that meets the edge exactly: sign of e . (d x (q - p)) for the infinitesimal shift e = (1, i, i^2) of the origin.
+int perturbed_side(const Vec3& d, const Vec3& p, const Vec3& q) {
+  Expansion e[3];
+  for (int k = 0; k < 3; ++k) e[k] = Expansion::difference(q[k], p[k]);
+  for (int k = 0; k < 3; ++k) {
+    const int a = (k + 1) % 3, b = (k + 2) % 3, sign = (e[b] * d[a] - e[a] * d[b]).sign();
+    if (sign != 0) return sign;
+  }
+  return 0;
+}
+
+// Sign of the volume spanned by the line (o, d) and the directed edge pq; 0 only for an edge parallel to the line.
+int side_of_line(const Vec3& o, const Vec3& d, const Vec3& p, const Vec3& q) {
+  const Vec3 u = p - o, v = q - o;
+  const Real yz = u.y * v.z, zy = u.z * v.y, zx = u.z * v.x, xz = u.x * v.z, xy = u.x * v.y, yx = u.y * v.x;
+  const Real value = (yz - zy) * d.x + (zx - xz) * d.y + (xy - yx) * d.z;
+  const Real size = (std::abs(yz) + std::abs(zy)) * std::abs(d.x) + (std::abs(zx) + std::abs(xz)) * std::abs(d.y) +
+                    (std::abs(xy) + std::abs(yx)) * std::abs(d.z);
+  // At most seven roundings on the way to the value (Shewchuk's bound for orient3d, 7.0... eps).
+  if (std::abs(value) > 8 * 0x1p-53 * size) return value > 0 ? 1 : -1;
+  const int sign = exact_side(o, d, p, q);
+  return sign != 0 ? sign : perturbed_side(d, p, q);
 }
 
 }  // namespace
@@ -139,18 +173,10 @@ void TriangleBvh::all_hits(const Vec3& origin, const Vec3& direction, Real t_min
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       const auto& c = corners_[order_[i]];
-      // Signed volumes of the line against the three edges: each edge is evaluated with its vertices in the same order of
-      // coordinates in both triangles that share it, so a ray through an edge is seen by exactly one of them (watertight).
-      Real w[3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 &a = c[k], &b = c[(k + 1) % 3];
-        const bool swap = a.x != b.x ? a.x > b.x : (a.y != b.y ? a.y > b.y : a.z > b.z);
-        const Vec3 p = (swap ? b : a) - origin, q = (swap ? a : b) - origin;
-        const Real v = dot(direction, cross(p, q));
-        w[k] = swap ? -v : v;
-        // zero counts as positive for the canonical direction of the edge, negative for the other
-        if (v == 0) w[k] = swap ? -0x1p-1000 : 0x1p-1000;
-      }
+      // Which side of the line each edge passes. The signs are exact and ties follow one perturbation of the origin, so a
+      // ray through an edge or a vertex crosses a closed surface as consistently as one beside it (watertight).
+      int w[3];
+      for (std::size_t k = 0; k < 3; ++k) w[k] = side_of_line(origin, direction, c[k], c[(k + 1) % 3]);
       const bool positive = w[0] > 0 && w[1] > 0 && w[2] > 0, negative = w[0] < 0 && w[1] < 0 && w[2] < 0;
       if (!positive && !negative) continue;
       const Vec3 n = cross(c[1] - c[0], c[2] - c[0]);

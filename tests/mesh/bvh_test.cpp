@@ -59,6 +59,17 @@ TEST(TriangleBvhRays, ThroughVerticesAndEdgesCrossAClosedSurfaceAnEvenNumberOfTi
     bvh.all_hits(origin, 0.5 * (mesh.corner(t, 0) + mesh.corner(t, 1)) - origin, 0, 1e9, hits);
     EXPECT_EQ(hits.size() % 2, 0u) << "edge of " << t;
   }
+  // Exactly through corners, edges and along faces of a box, skew and parallel to its axes.
+  const SurfaceMesh cube = make_box({2, 2, 2}, 0.5);
+  const TriangleBvh cube_bvh(cube);
+  for (int i = -3; i <= 3; ++i)
+    for (int j = -3; j <= 3; ++j)
+      for (const Vec3& d :
+           {Vec3{1, 1, 1}, Vec3{1, -1, 1}, Vec3{-1, 2, 1}, Vec3{1, 1, 0}, Vec3{0, 0, 1}, Vec3{1, 0, -1}}) {
+        const Vec3 through{0.5 * i, 0.5 * j, 1};
+        cube_bvh.all_hits(through - 8.0 * d, d, 0, 1e9, hits);
+        EXPECT_EQ(hits.size() % 2, 0u) << through.x << " " << through.y << " along " << d.x << " " << d.y << " " << d.z;
+      }
   // Along lattice directions through vertices and edges of an axis-aligned box, where zeros are exact.
   const SurfaceMesh box = make_box({2, 2, 2}, 0.5);
   const TriangleBvh box_bvh(box);
