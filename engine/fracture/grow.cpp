@@ -47,17 +47,41 @@ bool any_node(const Growth& g, NodeState s) {
   return false;
 }
 
-// Returns the number of steps taken; the limit when nodes were still active then.
-int propagate(Growth& g, int limit) {
-  for (int step = 0; step < limit; ++step) {
+// A front whose greater part runs along another layer of its own sheet missed it and would spiral on: the arms of a
+// crack behind a cavity can pass each other so. Ending the attempt at once saves asking for stress.
+bool spirals(Growth& g) {
+  constexpr Real kReach = 1.5;  // of h
+  constexpr int kLeast = 6;
+  int active = 0, layered = 0;
+  for (const FrontLoop& loop : g.loops)
+    for (const std::uint32_t v : loop)
+      if (g.sheet.state[v] == NodeState::kActive) ++active, layered += g.sheet.has_layer(v, kReach * g.h);
+  return layered >= kLeast && 2 * layered > active;
+}
+
+struct Progress {
+  int steps = 0;
+  bool ended = false;  // no active node is left
+  bool spiral = false;
+};
+
+Progress propagate(Growth& g, int limit) {
+  Progress p;
+  for (; p.steps < limit; ++p.steps) {
     label_front(g);
-    if (any_node(g, NodeState::kActive))
+    if (spirals(g)) {
+      p.spiral = true;
+      return p;
+    }
+    if (any_node(g, NodeState::kActive)) {
       advance_front(g, front_velocity(g));
-    else if (!remesh_front(g))
-      return step;
+    } else if (!remesh_front(g)) {
+      p.ended = true;
+      return p;
+    }
     remesh_front(g);
   }
-  return limit;
+  return p;
 }
 
 // Interior nodes only and each move a transaction, so the front and the invariants stay.
@@ -73,7 +97,7 @@ void smooth_interior(Growth& g) {
     }
 }
 
-void judge(const Growth& g, int limit, GrowthResult& result) {
+void judge(const Growth& g, const Progress& progress, GrowthResult& result) {
   std::size_t live = 0;
   Vec3 place;
   for (const FrontLoop& loop : g.loops)
@@ -83,8 +107,10 @@ void judge(const Growth& g, int limit, GrowthResult& result) {
   const std::string where = fmt::format("near ({:.4g}, {:.4g}, {:.4g}) m", place.x, place.y, place.z);
   if (live == 0)
     result.outcome = GrowthOutcome::kComplete;
-  else if (result.steps >= limit)
-    result.reason = fmt::format("still growing after {} steps {}", limit, where);
+  else if (progress.spiral)
+    result.reason = "the front runs along its own sheet " + where;
+  else if (!progress.ended)
+    result.reason = fmt::format("still growing after {} steps {}", progress.steps, where);
   else if (any_node(g, NodeState::kArrested))
     result.outcome = GrowthOutcome::kArrested;
   else if (any_node(g, NodeState::kBlocked))
@@ -93,10 +119,10 @@ void judge(const Growth& g, int limit, GrowthResult& result) {
     result.reason = "the sheet's border still cuts the body " + where;
 }
 
-GrowthResult finish(Growth& g, int limit, int steps) {
+GrowthResult finish(Growth& g, const Progress& progress) {
   GrowthResult result;
-  result.steps = steps;
-  judge(g, limit, result);
+  result.steps = progress.steps;
+  judge(g, progress, result);
   if (result.outcome == GrowthOutcome::kFailed) return result;
   smooth_interior(g);
   result.sheet = g.sheet.extract();
@@ -130,8 +156,7 @@ GrowthResult climb_ladder(const TriangleBvh& body, const CrackField& field, cons
       result.reason = std::move(refusal);
       return result;
     }
-    const int limit = step_limit(body, options, h);
-    result = finish(g, limit, propagate(g, limit));
+    result = finish(g, propagate(g, step_limit(body, options, h)));
     result.ladder_level = level;
     if (level == 0) first_reason = result.reason;
     result.reason = first_reason;

@@ -218,6 +218,16 @@ std::vector<std::uint32_t> SheetMesh::neighbours(std::uint32_t v) const {
   return out;
 }
 
+bool SheetMesh::has_layer(std::uint32_t v, Real reach) {
+  const Vec3 p = position[v], a = p - reach * normal[v], b = p + reach * normal[v];
+  grid_.query(box_around({a, b, b}, 0), candidates_);
+  return std::any_of(candidates_.begin(), candidates_.end(), [&](std::uint32_t t) {
+    const Triangle& n = triangles[t];
+    if (n[0] == v || n[1] == v || n[2] == v) return false;
+    return triangles_intersect({a, b, b}, {position[n[0]], position[n[1]], position[n[2]]});
+  });
+}
+
 void SheetMesh::load(const CrackSheet& sheet) {
   for (std::size_t v = 0; v < sheet.state.size(); ++v) add_node(sheet.position[v], sheet.normal[v], sheet.state[v]);
   triangles = sheet.triangles;

@@ -51,6 +51,8 @@ class SheetMesh {
   std::uint32_t triangle_at(std::uint32_t a, std::uint32_t b) const;
   // Nodes joined to v by an edge, ascending.
   std::vector<std::uint32_t> neighbours(std::uint32_t v) const;
+  // Does the sheet pass over or under node v, nearer than `reach` along its normal?
+  bool has_layer(std::uint32_t v, Real reach);
   // Nodes and triangles of a sheet that check_sheet() accepts; this mesh is empty.
   void load(const CrackSheet& sheet);
   // Without dead triangles and unused nodes; node order is kept.
