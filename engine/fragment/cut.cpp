@@ -1,5 +1,7 @@
 #include "engine/fragment/cut.h"
 
+#include <fmt/format.h>
+
 #include "engine/fragment/cut_checks.h"
 #include "engine/fragment/pieces.h"
 #include "engine/mesh/intersections.h"
@@ -29,7 +31,7 @@ SurfaceMesh jittered(const SurfaceMesh& slab, Real amplitude, std::uint64_t seed
 }
 
 // One try with the slab as it is. `again`: another jitter may help.
-Difference attempt(const CutOperand& body, const SurfaceMesh& slab_mesh, bool& again) {
+Difference attempt(const CutOperand& body, const SurfaceMesh& slab_mesh, bool first, bool& again) {
   Difference result;
   again = false;
   const CutOperand slab(slab_mesh);
@@ -37,11 +39,13 @@ Difference attempt(const CutOperand& body, const SurfaceMesh& slab_mesh, bool& a
     result.reason = "the slab is not a closed manifold: " + text;
     return result;
   }
-  again = true;
+  // The caller's slab has to be embedded; one that a jitter has folded over is only an unlucky draw.
+  again = !first;
   if (count_self_intersections(slab_mesh, 1) > 0) {
     result.reason = "the slab intersects itself";
     return result;
   }
+  again = true;
   const Piercing piercing = pierce(body, slab);
   if (piercing.status != PierceStatus::kOk) {
     result.reason = piercing.reason;
@@ -92,13 +96,14 @@ CutResult cut(const SurfaceMesh& body, const SurfaceMesh& slab, const CutOptions
   for (int jitters = 0;; ++jitters) {
     bool again = false;
     const SurfaceMesh moved = jitters == 0 ? full_slab : jittered(full_slab, amplitude, seeds.next());
-    const Difference difference = attempt(operand, moved, again);
+    const Difference difference = attempt(operand, moved, jitters == 0, again);
     result.jitters = jitters;
     if (difference.ok) {
       collect(difference, options, result);
       return result;
     }
     result.reason = difference.reason;
+    if (again && jitters == kMaxJitters) result.reason += fmt::format(" (after {} jitters of the slab)", jitters);
     if (!again || jitters == kMaxJitters) return result;
   }
 }

@@ -1,3 +1,7 @@
+#include <filesystem>
+
+#include "engine/mesh/bvh.h"
+#include "engine/mesh/load.h"
 #include "engine/mesh/shapes.h"
 #include "tests/fragment/slabs.h"
 
@@ -53,6 +57,58 @@ TEST(SlowCut, FourCutsInARowStayValid) {
       if (!result.ok) break;
       body = std::move(result.fragments[0]);
     }
+  }
+}
+
+// The set law itself, by another way: ray parity in doubles. Points nearer than 1e-6 to a surface are left out, the
+// jitter being 1e-7 of the edge.
+TEST(CutOracle, APointIsInAFragmentExactlyWhenItIsInTheBodyAndNotInTheSlab) {
+  Random random(22);
+  const auto bodies = shapes();
+  int counted[2] = {0, 0};
+  for (const Shape& body : bodies)
+    for (int i = 0; i < 3; ++i) {
+      SCOPED_TRACE(body.name);
+      SlabShape shape = random_slab(random, body.size);
+      shape.thickness = 0.1 * body.size;
+      const SurfaceMesh slab = make_slab(shape);
+      CutOptions options = options_for(body.mesh);
+      options.min_fragment_volume = 0;
+      const CutResult result = cut(body.mesh, slab, options);
+      expect_good(body.mesh, result);
+      const TriangleBvh in_body(body.mesh), in_slab(slab);
+      std::vector<TriangleBvh> in_fragment;
+      for (const SurfaceMesh& f : result.fragments) in_fragment.emplace_back(f);
+      const Box box = bounding_box(body.mesh);
+      for (int k = 0; k < 500; ++k) {
+        const Vec3 p{random.uniform(box.low.x, box.high.x), random.uniform(box.low.y, box.high.y),
+                     random.uniform(box.low.z, box.high.z)};
+        const Real close = 1e-6 * body.size;
+        if (in_body.closest(p, close).face != kNone || in_slab.closest(p, close).face != kNone) continue;
+        const bool expected = in_body.inside(p) && !in_slab.inside(p);
+        int count = 0;
+        for (const TriangleBvh& f : in_fragment) count += f.inside(p);
+        ASSERT_EQ(count, expected ? 1 : 0);
+        ++counted[expected];
+      }
+    }
+  EXPECT_GT(counted[0], 1000);
+  EXPECT_GT(counted[1], 1000);
+}
+
+TEST(SlowCut, RandomSlabsThroughAScannedSurfaceLeaveOnlyValidBodies) {
+  const std::string path = std::string(SHERD_SHARED) + "/meshes/dev/bunny_5k.ply";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
+  LoadLog log;
+  const SurfaceMesh body = load_mesh(path, {}, log);
+  ASSERT_TRUE(is_valid(report_mesh(body, {true, 10})));
+  const Box box = bounding_box(body);
+  Random random(23);
+  for (int i = 0; i < 20; ++i) {
+    SCOPED_TRACE(i);
+    SlabShape shape = random_slab(random, 0.4 * box.diagonal());
+    shape.centre += box.centre();
+    expect_good(body, cut_of(body, make_slab(shape)));
   }
 }
 
