@@ -1,0 +1,208 @@
+// The `sherd` program from outside: exit codes, messages, and what it leaves on disk.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code = -1;
+  std::string output, errors;
+};
+
+class Command : public testing::Test {
+ protected:
+  void SetUp() override {
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    folder_ =
+        fs::temp_directory_path() / (std::string("sherd_command_") + test.name() + "_" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static std::string read(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  }
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+  // Runs a shell script in the test's folder, with $SHERD the program.
+  Outcome shell(const std::string& script) const {
+    const std::string setting =
+        "cd '" + folder_.string() + "' || exit 99; SHERD='" SHERD_COMMAND "'; exec >stdout 2>stderr; ";
+    const int status = std::system((setting + script).c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "stdout"), read(folder_ / "stderr")};
+  }
+  Outcome sherd(const std::string& arguments) const { return shell("\"$SHERD\" " + arguments); }
+  void write_tetrahedron(const std::string& name, bool closed) const {
+    write(name,
+          std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n") + (closed ? "f 2 3 4\n" : ""));
+  }
+
+  fs::path folder_;
+};
+
+// Two small bodies, few pixels: a fraction of a second.
+constexpr const char* kSmallScene = R"(
+duration = 0.05
+frame_rate = 100
+[[body]]
+name = "box"
+shape = {kind = "box", size = [0.1, 0.1, 0.1]}
+edge_length = 0.05
+position = [0, 0.06, 0]
+[[body]]
+name = "ball"
+shape = {kind = "sphere", radius = 0.05}
+edge_length = 0.03
+position = [0.2, 0.2, 0]
+[output]
+width = 64
+height = 48
+samples = 1
+)";
+
+TEST_F(Command, VersionAndHelpSucceed) {
+  const Outcome version = sherd("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_EQ(version.output.substr(0, 6), "sherd ");
+  const Outcome help = sherd("--help");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_NE(help.output.find("Examples:"), std::string::npos);
+  EXPECT_NE(help.output.find("sherd run scenes/bunny.toml"), std::string::npos);
+}
+
+TEST_F(Command, BadOptionsAreBadInput) {
+  for (const char* arguments : {"", "fly", "run", "run a.toml --threads 0", "run a.toml --frames x", "check",
+                                "check a.obj --max-hole -1", "check a.obj --frob"}) {
+    const Outcome outcome = sherd(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_FALSE(outcome.errors.empty()) << arguments;
+  }
+}
+
+TEST_F(Command, CheckAcceptsASolid) {
+  write_tetrahedron("solid.obj", true);
+  const Outcome outcome = sherd("check solid.obj");
+  EXPECT_EQ(outcome.code, 0) << outcome.output << outcome.errors;
+  EXPECT_NE(outcome.output.find("Usable as it is."), std::string::npos) << outcome.output;
+}
+
+TEST_F(Command, CheckFillsHolesOnlyUpToTheStatedSize) {
+  // The missing face's longest edge is sqrt(2).
+  write_tetrahedron("open.obj", false);
+  EXPECT_EQ(sherd("check open.obj --max-hole 0.5").code, 2);
+  const Outcome filled = sherd("check open.obj --max-hole 2");
+  EXPECT_EQ(filled.code, 0) << filled.output << filled.errors;
+  EXPECT_NE(filled.output.find("Usable after repair."), std::string::npos) << filled.output;
+}
+
+TEST_F(Command, CheckReportsJson) {
+  write_tetrahedron("open.obj", false);
+  const auto refused = nlohmann::json::parse(sherd("check --json open.obj").output);
+  EXPECT_EQ(refused.at("usable"), false);
+  EXPECT_EQ(refused.at("loaded").at("border_edges"), 3);
+  EXPECT_TRUE(refused.contains("refusal"));
+  const auto filled = nlohmann::json::parse(sherd("check --json --max-hole 2 open.obj").output);
+  EXPECT_EQ(filled.at("usable"), true);
+  EXPECT_EQ(filled.at("repaired").at("border_edges"), 0);
+  EXPECT_EQ(filled.at("repaired").at("triangles"), 4);
+}
+
+TEST_F(Command, CheckNamesAMissingFile) {
+  const Outcome outcome = sherd("check none.obj");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.errors.find("none.obj"), std::string::npos) << outcome.errors;
+}
+
+TEST_F(Command, NothingIsCreatedForABadScene) {
+  write("bad.toml", std::string(kSmallScene) + "[ground]\nfriction = -1\n");
+  const Outcome outcome = sherd("run bad.toml --out results");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.errors, "bad.toml:19:12: ground.friction: value -1 not allowed; allowed range 0 to 10\n");
+  EXPECT_FALSE(fs::exists(folder_ / "results"));
+  EXPECT_EQ(sherd("run none.toml --out results").code, 2);
+  EXPECT_FALSE(fs::exists(folder_ / "results"));
+}
+
+TEST_F(Command, NothingIsCreatedForABadMesh) {
+  write_tetrahedron("open.obj", false);
+  write("scene.toml", "[[body]]\nname = \"a\"\nmesh = \"open.obj\"\nmax_hole = 0.1\n");
+  const Outcome outcome = sherd("run scene.toml --out results");
+  EXPECT_EQ(outcome.code, 2) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("open.obj"), std::string::npos) << outcome.errors;
+  EXPECT_FALSE(fs::exists(folder_ / "results"));
+}
+
+TEST_F(Command, AFileInTheWayOfTheResultsIsBadInput) {
+  write("scene.toml", kSmallScene);
+  write("results", "mine");
+  const Outcome outcome = sherd("run scene.toml --no-render --out results");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(read(folder_ / "results"), "mine");
+}
+
+TEST_F(Command, RunLeavesFramesPiecesAndStatistics) {
+  write("scene.toml", kSmallScene);
+  const Outcome outcome = sherd("run scene.toml --out results --frames 3");
+  ASSERT_EQ(outcome.code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("results"), std::string::npos);
+  EXPECT_EQ(outcome.output.find('\r'), std::string::npos) << "plain lines in a pipe";
+  for (const char* name : {"frame_0000.png", "frame_0001.png", "frame_0002.png"})
+    EXPECT_EQ(read(folder_ / "results/frames" / name).substr(1, 3), "PNG") << name;
+  EXPECT_FALSE(fs::exists(folder_ / "results/frames/frame_0003.png"));
+  EXPECT_TRUE(nlohmann::json::accept(read(folder_ / "results/stats.json")));
+  const auto pieces = nlohmann::json::parse(read(folder_ / "results/pieces/transforms.json"));
+  EXPECT_EQ(pieces.at("frames"), 3);
+  EXPECT_EQ(pieces.at("pieces").size(), 2u);
+}
+
+TEST_F(Command, AShorterRunLeavesNoPicturesOfALongerOne) {
+  write("scene.toml", kSmallScene);
+  ASSERT_EQ(sherd("run scene.toml --out results --frames 4").code, 0);
+  write("results/notes.txt", "mine");
+  write("results/frames/frame_note.txt", "mine");
+  ASSERT_EQ(sherd("run scene.toml --out results --frames 2 --quiet").code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "results/frames/frame_0001.png"));
+  EXPECT_FALSE(fs::exists(folder_ / "results/frames/frame_0002.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "results/notes.txt"));
+  EXPECT_TRUE(fs::exists(folder_ / "results/frames/frame_note.txt"));
+}
+
+TEST_F(Command, QuietAndUnrenderedRunsSayAndDrawNothing) {
+  write("scene.toml", kSmallScene);
+  const Outcome outcome = sherd("run scene.toml --quiet --no-render --out results");
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  EXPECT_EQ(outcome.output, "");
+  EXPECT_FALSE(fs::exists(folder_ / "results/frames"));
+  EXPECT_TRUE(fs::exists(folder_ / "results/stats.json"));
+  EXPECT_TRUE(fs::exists(folder_ / "results/pieces/transforms.json"));
+}
+
+TEST_F(Command, AnInterruptLeavesACompleteFolder) {
+  // Long enough that a signal after the first picture finds it running.
+  std::string text = kSmallScene;
+  text.replace(text.find("duration = 0.05"), 15, "duration = 3000");
+  write("scene.toml", text);
+  const Outcome outcome = shell(
+      "\"$SHERD\" run scene.toml --out results & run=$!; n=0; "
+      "while [ ! -e results/frames/frame_0000.png ] && [ $n -lt 300 ]; do sleep 0.1; n=$((n + 1)); done; "
+      "kill -INT $run; wait $run");
+  EXPECT_EQ(outcome.code, 130);
+  EXPECT_TRUE(nlohmann::json::accept(read(folder_ / "results/stats.json")));
+  EXPECT_TRUE(nlohmann::json::accept(read(folder_ / "results/pieces/transforms.json")));
+}
+
+}  // namespace
