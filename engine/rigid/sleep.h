@@ -19,9 +19,18 @@ struct BodyRigidState {
   std::vector<BodyId> partners;  // touched when it fell asleep, ascending
 };
 
+// Impulse of the last step at a contact, from which the next solve starts.
+struct WarmContact {
+  BodyId a, b;
+  Vec3 place;    // material coordinates of a, m
+  Vec3 impulse;  // on a, world, N s
+};
+
 // Copyable: a copy with the bodies' poses and velocities restarts a run exactly.
 struct RigidState {
   std::map<BodyId, BodyRigidState> bodies;
+  std::vector<WarmContact> warm;  // by (a, b)
+  Real warm_dt = 0;               // s, step of those impulses
 };
 
 // Forgets bodies that are gone, adds new ones, and wakes sleepers that were moved or lost or changed what they rest on.

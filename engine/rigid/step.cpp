@@ -9,6 +9,7 @@ namespace sherd {
 namespace {
 
 constexpr int kNewborn = 3;        // steps in which siblings do not bounce
+constexpr Real kSamePlace = 0.03;  // a contact within this share of the body's size is the one of the last step
 constexpr Real kTolerance = 1e-4;  // of the solve, relative to the fastest approach
 
 // Everything of one step by body index; the ground is the motion past the last body.
@@ -71,6 +72,47 @@ Real restitution(const Step& s, const Contact& c) {
   if (newborn_siblings(s, c)) return 0;
   const Real a = s.bodies[s.index.at(c.a)].material.restitution;
   return std::max(a, c.b == kGround ? s.ground.restitution : s.bodies[s.index.at(c.b)].material.restitution);
+}
+
+bool pair_before(const WarmContact& x, const WarmContact& y) {
+  return x.a != y.a ? x.a < y.a : x.b < y.b;
+}
+
+// Starts each row from the impulse of the nearest contact of the pair in the last step, each used once.
+void warm_start(Step& s, std::span<const Contact> contacts) {
+  const std::vector<WarmContact>& warm = s.state.warm;
+  if (warm.empty()) return;
+  const Real scale = s.options.dt / s.state.warm_dt;
+  std::vector<char> used(warm.size(), 0);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Contact& c = contacts[i];
+    const auto [first, last] = std::equal_range(warm.begin(), warm.end(), WarmContact{c.a, c.b, {}, {}}, pair_before);
+    const Vec3 place = to_material(s.bodies[s.rows[i].a], c.point);
+    const Real near = kSamePlace * s.pair_size(c);
+    Real best = near * near;
+    auto nearest = last;
+    for (auto w = first; w != last; ++w) {
+      const Real d = distance2(w->place, place);
+      if (!used[static_cast<std::size_t>(w - warm.begin())] && d < best) best = d, nearest = w;
+    }
+    if (nearest == last) continue;
+    used[static_cast<std::size_t>(nearest - warm.begin())] = 1;
+    ContactRow& r = s.rows[i];
+    for (int k = 0; k < 3; ++k) r.impulse[k] = scale * dot(r.axis[k], nearest->impulse);
+    r.impulse[0] = std::max(0.0, r.impulse[0]);
+  }
+}
+
+void keep_warm(const Step& s, std::span<const Contact> contacts, RigidState& state) {
+  state.warm.clear();
+  state.warm_dt = s.options.dt;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ContactRow& r = s.rows[i];
+    if (r.impulse[0] <= 0) continue;
+    state.warm.push_back({contacts[i].a, contacts[i].b, to_material(s.bodies[r.a], contacts[i].point),
+                          r.axis[0] * r.impulse[0] + r.axis[1] * r.impulse[1] + r.axis[2] * r.impulse[2]});
+  }
+  std::stable_sort(state.warm.begin(), state.warm.end(), pair_before);
 }
 
 SolveReport solve_impact(Step& s, std::span<const Contact> contacts, std::vector<Motion>& after) {
@@ -167,9 +209,11 @@ void rigid_step(std::span<Body> bodies, const GroundPlane& ground, const RigidOp
   for (std::uint32_t i = 0; i < bodies.size(); ++i) s.index[bodies[i].id] = i;
   stats.woken = detect(s, cache, state, contacts, stats.contact);
 
+  warm_start(s, contacts);
   std::vector<Motion> after, advance;
   const SolveReport report = solve_impact(s, contacts, after);
   solve_advance(s, contacts, advance);
+  keep_warm(s, contacts, state);
   stats.iterations = report.iterations, stats.change = report.change;
   std::vector<char> still(bodies.size(), 0);
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
