@@ -87,7 +87,7 @@ void collect(const Difference& difference, const CutOptions& options, CutResult&
 CutResult cut(const SurfaceMesh& body, const SurfaceMesh& slab, const CutOptions& options) {
   CutResult result;
   for (const auto& [mesh, name] : {std::pair(&body, "the body"), std::pair(&slab, "the slab")})
-    if (result.reason = check_closed(*mesh, name); !result.reason.empty()) return result;
+    if (result.reason = check_numbers(*mesh, name); !result.reason.empty()) return result;
   const CutOperand operand(with_attributes(body));
   const SurfaceMesh full_slab = with_attributes(slab);
   if (result.reason = refuse_operands(body, slab, operand); !result.reason.empty()) return result;

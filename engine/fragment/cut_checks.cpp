@@ -19,7 +19,7 @@ SurfaceMesh part_of(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& f
 
 }  // namespace
 
-std::string check_closed(const SurfaceMesh& mesh, const char* name) {
+std::string check_numbers(const SurfaceMesh& mesh, const char* name) {
   if (mesh.triangles.empty()) return fmt::format("{} is empty", name);
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i)
     if (!is_finite(mesh.vertices[i])) return fmt::format("{}: vertex {} is not finite", name, i);

@@ -6,8 +6,8 @@
 
 namespace sherd {
 
-// Finite, indices in range, closed and consistently oriented; `name` begins the text.
-std::string check_closed(const SurfaceMesh& mesh, const char* name);
+// Not empty, all coordinates finite, all indices in range; `name` begins the text.
+std::string check_numbers(const SurfaceMesh& mesh, const char* name);
 // Closed with one fan of faces around each vertex.
 std::string check_manifold(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twin);
 // Parts of cut faces have area and meet no other face but at shared vertices and edges: exact on the rounded
