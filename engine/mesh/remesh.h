@@ -10,11 +10,11 @@
 namespace sherd {
 
 struct RemeshOptions {
-  Real edge_length = 0;              // target h, metres; edges come out between about 0.8 h and 1.33 h
-  Real feature_angle = 40;           // degrees: edges whose normals differ by more are creases
-  int iterations = 5;                // >= 0; 0 only repairs slivers
-  std::vector<std::uint8_t> locked;  // empty, or one entry a vertex: nonzero vertices keep their place, and edges and
-                                     // faces between locked vertices stay as they are
+  Real edge_length = 0;                   // target h, metres; edges come out between about 0.8 h and 1.33 h
+  Real feature_angle = 40;                // degrees: edges whose normals differ by more are creases
+  int iterations = 5;                     // >= 0; 0 only repairs slivers
+  std::vector<std::uint8_t> locked = {};  // empty, or one entry a vertex: nonzero vertices keep their place, and edges
+                                          // and faces between locked vertices stay as they are
 };
 
 enum class RemeshStatus { kOk, kRefused };

@@ -235,7 +235,7 @@ void Remesher::repair_face(std::uint32_t t, Real angle) {
     const std::uint32_t twin = mesh_.twin[h[0]];
     if (try_collapse(forward ? h[0] : twin, true) || try_collapse(forward ? twin : h[0], true)) return;
   }
-  // Cap: the long edge is flipped, or split at the foot of the height when it is a feature edge.
+  // Cap: the long edge is flipped, or split at the foot of the height where it cannot be.
   for (const std::uint32_t e : {h[2], h[1]}) {
     if (mesh_.line[e] != kNone || locked_edge(e)) continue;
     const std::uint32_t o = mesh_.twin[e];
@@ -244,7 +244,8 @@ void Remesher::repair_face(std::uint32_t t, Real angle) {
     const Real before = std::min(now, smallest_angle({b, a, d}));
     if (std::min(smallest_angle({a, d, c}), smallest_angle({b, c, d})) > before * 1.01 && try_flip(e)) return;
   }
-  if (mesh_.line[h[2]] != kNone && now < 0.5 * angle && split_cap(h[2])) return;
+  if (now < 0.5 * angle && split_cap(h[2])) return;
+  if (!mesh_.alive(t)) return;
   for (std::uint32_t k = 0; k < 3; ++k) {
     const std::uint32_t v = mesh_.triangle[t][k];
     if (locked(v)) continue;
@@ -253,21 +254,40 @@ void Remesher::repair_face(std::uint32_t t, Real angle) {
   }
 }
 
-// Splits feature edge h next to the opposite vertex and merges that vertex into the new one.
+// Splits edge h next to the opposite vertex v and merges the two: v moves to the line, or, when v is itself part of a
+// feature and the gap is tiny, the new vertex moves to v.
 bool Remesher::split_cap(std::uint32_t h) {
   const std::uint32_t line = mesh_.line[h], v = mesh_.tip(h);
-  if (locked_edge(h) || features_.role[v] != VertexRole::kFree) return false;
-  const FeatureLine& l = features_.lines[line];
-  const Real s0 = arc_on(line, mesh_.from(h)), s1 = arc_on(line, mesh_.to(h));
-  const Real arc = std::clamp(l.nearest(mesh_.position[v]), std::min(s0, s1), std::max(s0, s1));
-  if (std::min(std::abs(arc - s0), std::abs(arc - s1)) < 0.05 * h_) return false;
-  if (!try_split(h, l.at(arc), arc)) return false;
+  if (locked_edge(h)) return false;
+  const Vec3 a = mesh_.position[mesh_.from(h)], b = mesh_.position[mesh_.to(h)], p = mesh_.position[v];
+  const bool free = features_.role[v] == VertexRole::kFree && line != kNone;
+  Real arc = 0;
+  Vec3 foot = a + (b - a) * (dot(p - a, b - a) / distance2(a, b));
+  if (line != kNone) {
+    const FeatureLine& l = features_.lines[line];
+    const Real s0 = arc_on(line, mesh_.from(h)), s1 = arc_on(line, mesh_.to(h));
+    arc = std::clamp(l.nearest(p), std::min(s0, s1), std::max(s0, s1));
+    foot = l.at(arc);
+  }
+  if (!free && distance(foot, p) > 0.02 * h_) return false;
+  if (std::min(distance(foot, a), distance(foot, b)) < 0.05 * h_) return false;
+  if (!try_split(h, foot, arc)) return false;
   const auto m = static_cast<std::uint32_t>(mesh_.position.size() - 1);
-  std::uint32_t edge = kNone;
-  mesh_.for_out(v, [&](std::uint32_t x) {
-    if (mesh_.to(x) == m) edge = x;
-  });
-  return edge != kNone && try_collapse(edge, true);
+  const auto edge = [&](std::uint32_t from, const auto& wanted) {
+    std::uint32_t found = kNone;
+    mesh_.for_out(from, [&](std::uint32_t x) {
+      if (wanted(x)) found = x;
+    });
+    return found;
+  };
+  const std::uint32_t across = edge(m, [&](std::uint32_t x) { return mesh_.to(x) == v; });
+  if (try_collapse(free ? mesh_.twin[across] : across, true)) return true;
+  // Take the split back.
+  for (const Vec3& end : {a, b}) {
+    const std::uint32_t back = edge(m, [&](std::uint32_t x) { return mesh_.position[mesh_.to(x)] == end; });
+    if (back != kNone && try_collapse(back, true)) break;
+  }
+  return false;
 }
 
 }  // namespace sherd
