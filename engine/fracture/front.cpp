@@ -14,6 +14,9 @@ constexpr Real kMinTurnCosine = 0.5;  // a crack turns by at most 60 degrees a s
 constexpr Real kSteerRange = 9.0;     // of h: fronts that face each other closer than this bend towards each other
 constexpr Real kSteerFull = 1.5;      // of h: here they head straight for each other
 constexpr std::size_t kSteerLoopDistance = 5;
+// Of h: layers of the sheet keep at least this distance. Arms that meet out of line are then held edge to edge, where
+// they can be joined, instead of one running over the other.
+constexpr Real kMinClearance = 0.2;
 constexpr Real kAheadFactor = 1.5;  // of h: paper 6.3 (b), smoothness: a node this far behind both neighbours follows
 
 Vec3 along(const Growth& g, std::uint32_t a, std::uint32_t b) {
@@ -128,7 +131,7 @@ Growth::Growth(const TriangleBvh& body_, const CrackField& field_, const GrowthO
       options(options_),
       h(edge),
       overshoot(overshoot_),
-      sheet(edge, 1.1 * std::max(options_.thickness, 0.02 * edge)) {}
+      sheet(edge, 1.1 * std::max(options_.thickness, kMinClearance * edge)) {}
 
 Vec3 outward_direction(const Growth& g, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   const Vec3 e = g.sheet.normal[b], before = normalized(along(g, a, b)), after = normalized(along(g, b, c));
