@@ -20,7 +20,7 @@ struct GrowthOptions {
   Real edge_length = 0;           // h: target edge of body and sheet, m
   Real propagation_strength = 0;  // Pa
   Real thickness = 0;             // t, m (decides nothing while growing but the overshoot's lower bound)
-  Real speed = 0.5;               // the paper's alpha: fraction of h per sub-step at the initiation stress
+  Real speed = 0.5;               // the paper's alpha: step in units of h at the seed's stress; clamped to 0.4 .. 0.8
   Real overshoot = 0.15;          // of h: how far past the surface an exited node is placed
   int max_steps = 0;              // 0: 4 x (bounding-box diagonal / edge_length) + 64
 };
@@ -39,7 +39,8 @@ struct GrowthResult {
 // `body` must describe a valid mesh. Never throws for geometric trouble: the outcome says what happened. Deterministic.
 GrowthResult grow_crack(const TriangleBvh& body, const CrackField& field, const CrackSeed& seed,
                         const GrowthOptions& options);
-// The same from an arrested sheet (O13): labels the front anew and goes on.
+// The same from an arrested sheet (O13): labels the front anew and goes on. `body` is the body without this crack (the
+// one the sheet was grown in); kRejectedSeed when check_sheet() refuses the sheet.
 GrowthResult resume_crack(const TriangleBvh& body, const CrackField& field, const CrackSheet& sheet,
                           const GrowthOptions& options);
 
