@@ -207,6 +207,7 @@ FragmentShape Event::finished(Piece& piece) {
     SurfaceMesh out;
     RemeshOptions o;
     o.edge_length = solid_.edge_length();
+    o.locked = lock_good_regions(*piece.mesh, o.edge_length, 2 * o.edge_length);  // far faces stay as they are
     const RemeshReport report = remesh(*piece.mesh, o, out);
     if (report.status == RemeshStatus::kOk && is_valid(report_mesh(out)))
       shape.clean = std::make_shared<SurfaceMesh>(std::move(out));
