@@ -96,6 +96,7 @@ void read_world(TableReader& root, Scene& scene) {
     f.max_fragments = r.integer("max_fragments", 1, 100000, f.max_fragments);
     f.min_fragment_volume = r.number("min_fragment_volume", {0, 0.5}, f.min_fragment_volume);
     f.max_generation = r.integer("max_generation", 0, 1000, f.max_generation);
+    f.net_section = r.flag("net_section", f.net_section);
     f.speed = r.number("speed", {0.05, 1}, f.speed);
   });
 }

@@ -106,6 +106,7 @@ struct SceneFracture {
   int max_fragments = 200;          // alive in the scene; at this number nothing breaks any more
   Real min_fragment_volume = 1e-4;  // of the scene body's volume; smaller pieces neither appear nor break
   int max_generation = 4;           // a fragment of this generation breaks no further (scene bodies are generation 0)
+  bool net_section = true;          // a stopped crack goes through when the rest of its section cannot bear the load
   Real speed = 0.5;                 // fraction of an edge a front moves per sub-step at the initiation strength (alpha)
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/fracture/initiate.h"
+#include "engine/fracture/net_section.h"
 #include "engine/fracture/thicken.h"
 #include "engine/mesh/remesh.h"
 #include "engine/mesh/validate.h"
@@ -41,7 +42,7 @@ class Event {
   Event(Solid& solid, const FractureOptions& options, FractureResult& result)
       : solid_(solid), options_(options), result_(result), next_id_(options.first_crack_id) {
     pieces_.push_back({solid.shared_mesh(), solid.partial, false, nullptr});
-    growth_.edge_length = solid.edge_length();
+    growth_.edge_length = solid.root().edge_length;
     growth_.propagation_strength = options.propagation_strength;
     growth_.thickness = options.thickness;
     growth_.speed = options.speed;
@@ -52,6 +53,8 @@ class Event {
   void finish();
 
  private:
+  // Lets the ligament of a stopped crack fail where it cannot bear the load.
+  void break_ligament(const TriangleBvh& body, const CrackField& field, GrowthResult& grown, CrackRecord& record);
   // Cuts piece `index` with a grown sheet; true when the piece list changed.
   bool apply(std::size_t index, GrowthResult&& grown, CrackRecord& record);
   CutResult cut_piece(const SurfaceMesh& mesh, const SurfaceMesh& slab);
@@ -72,9 +75,9 @@ class Event {
 CutResult Event::cut_piece(const SurfaceMesh& mesh, const SurfaceMesh& slab) {
   const Stopwatch watch(result_.seconds.cut);
   CutOptions o;
-  o.edge_length = solid_.edge_length();
+  o.edge_length = solid_.root().edge_length;
   o.seed = static_cast<std::uint64_t>(next_id_) + 1;
-  o.min_fragment_volume = options_.min_fragment_volume * solid_.root_volume() / signed_volume(mesh);
+  o.min_fragment_volume = options_.min_fragment_volume * solid_.root().volume / signed_volume(mesh);
   return cut(mesh, slab, o);
 }
 
@@ -90,6 +93,18 @@ void Event::replace(std::size_t index, CutResult&& c) {
   const auto at = pieces_.erase(pieces_.begin() + static_cast<std::ptrdiff_t>(index));
   pieces_.insert(at, std::make_move_iterator(parts.begin()), std::make_move_iterator(parts.end()));
   result_.changed = true;
+}
+
+void Event::break_ligament(const TriangleBvh& body, const CrackField& field, GrowthResult& grown, CrackRecord& record) {
+  if (!options_.net_section || grown.outcome != GrowthOutcome::kArrested) return;
+  const Stopwatch watch(result_.seconds.grow);
+  NetSection net = net_section(body, field, grown.sheet, growth_);
+  if (!net.complete) return;
+  record.net_section_stress = net.stress;
+  if (net.stress < options_.propagation_strength) return;
+  const int level = grown.ladder_level, steps = grown.steps;
+  grown = std::move(net.through);
+  grown.ladder_level = std::max(grown.ladder_level, level), grown.steps += steps;
 }
 
 bool Event::apply(std::size_t index, GrowthResult&& grown, CrackRecord& record) {
@@ -143,13 +158,14 @@ void Event::resume(const CrackField& field) {
         const Stopwatch watch(result_.seconds.grow);
         grown = resume_crack(pieces_[i].tree(), field, sheet, growth_);
       }
+      CrackRecord record;
+      break_ligament(pieces_[i].tree(), field, grown, record);
       const bool grew = grown.outcome == GrowthOutcome::kComplete ||
                         (grown.outcome == GrowthOutcome::kArrested && grown.sheet.position.size() > sheet.position.size());
       if (!grew) {
         pieces_[i].partial.push_back(sheet);
         continue;
       }
-      CrackRecord record;
       record.id = next_id_++, record.resumed = true, record.seed = sheet.position[0], record.stress = sheet.reference_stress;
       const bool split = apply(i, std::move(grown), record);
       if (record.outcome == "failed" || record.outcome == "cut refused") pieces_[i].partial.push_back(sheet);
@@ -178,6 +194,7 @@ void Event::start(const CrackField& field, const std::vector<CrackSeed>& seeds) 
       const Stopwatch watch(result_.seconds.grow);
       grown = grow_crack(pieces_[index].tree(), field, seed, growth_);
     }
+    break_ligament(pieces_[index].tree(), field, grown, record);
     apply(index, std::move(grown), record);
     result_.cracks.push_back(std::move(record));
   }
@@ -206,7 +223,7 @@ FragmentShape Event::finished(Piece& piece) {
     const Stopwatch watch(result_.seconds.remesh);
     SurfaceMesh out;
     RemeshOptions o;
-    o.edge_length = solid_.edge_length();
+    o.edge_length = solid_.root().edge_length;
     o.locked = lock_good_regions(*piece.mesh, o.edge_length, 2 * o.edge_length);  // far faces stay as they are
     const RemeshReport report = remesh(*piece.mesh, o, out);
     if (report.status == RemeshStatus::kOk && is_valid(report_mesh(out)))

@@ -18,6 +18,7 @@ struct CrackRecord {
   std::string outcome;          // "complete", "arrested", "rejected", "failed", "cut refused"
   std::string reason;
   int ladder_level = 0, steps = 0;
+  Real net_section_stress = 0;  // mean tension the rest of the section would bear, Pa; 0: not asked
   Real area = 0;                // inside the body, m^2
   Real removed_volume = 0;      // m^3, thickness times area
   std::size_t fragments = 0;    // the piece it ran through fell into
@@ -34,6 +35,7 @@ struct FractureOptions {
   Real strength = 0;             // initiation, Pa
   Real propagation_strength = 0; // Pa
   Real speed = 0.5;
+  bool net_section = true;       // let the ligament of a stopped crack fail, see net_section.h
   int max_cracks = 8;
   std::size_t max_pieces = 200;  // the body may fall into
   Real min_fragment_volume = 1e-4;  // of the scene body's volume

@@ -69,7 +69,7 @@ struct Simulation::Impl {
     for (std::size_t i = 0; i < s.bodies.size(); ++i) {
       BuiltBody built = build_body(s.bodies[i], BodyId{next_id++});
       for (const std::string& m : built.messages) record.messages.push_back(built.body.name + ": " + m);
-      companions.push_back({std::make_shared<Solid>(built.body.mesh, built.edge_length, built.body.mass.volume), i, 0, 0});
+      companions.push_back({std::make_shared<Solid>(built.body.mesh, RootScale{built.edge_length, built.body.mass.volume, bounding_box(*built.body.mesh).diagonal()}), i, 0, 0});
       bodies.push_back(std::move(built.body));
     }
     ground = {s.ground.enabled, s.ground.height, s.ground.restitution, s.ground.friction};
@@ -150,8 +150,9 @@ FractureOptions Simulation::Impl::fracture_options(std::size_t i) const {
   o.strength = body.material.strength;
   o.propagation_strength = body.material.propagation_strength;
   // The default follows the scene body, not the fragment, so that all cracks of a body look alike.
-  o.thickness = body.material.crack_thickness > 0 ? body.material.crack_thickness : 1e-3 * std::cbrt(companions[i].solid->root_volume()) * 2;
+  o.thickness = body.material.crack_thickness > 0 ? body.material.crack_thickness : 1e-3 * companions[i].solid->root().diagonal;
   o.speed = scene.fracture.speed;
+  o.net_section = scene.fracture.net_section;
   o.max_cracks = scene.fracture.max_cracks;
   o.max_pieces = static_cast<std::size_t>(scene.fracture.max_fragments) - bodies.size() + 1;
   o.min_fragment_volume = scene.fracture.min_fragment_volume;
@@ -179,7 +180,7 @@ void Simulation::Impl::apply_shapes(std::size_t i, FractureResult& result, Event
     fragments.push_back(std::move(b));
     const bool clean_kept = shape.clean == companion.solid->shared_mesh();
     auto solid = clean_kept ? companion.solid
-                            : std::make_shared<Solid>(shape.clean, companion.solid->edge_length(), companion.solid->root_volume());
+                            : std::make_shared<Solid>(shape.clean, companion.solid->root());
     solid->partial = std::move(shape.partial);
     solids.push_back({std::move(solid), companion.scene_body, 0, 0});
   }

@@ -10,19 +10,24 @@
 
 namespace sherd {
 
+// Lengths that all fragments of a scene body share.
+struct RootScale {
+  Real edge_length = 0;  // target edge h, m
+  Real volume = 0;       // of the scene body, m^3
+  Real diagonal = 0;     // of its bounding box, m
+};
+
 // A crack that stopped inside is kept as a sheet beside the *clean* mesh (without its notch): the stress is solved on the
 // clean mesh and the sheet grows on from it later (design O13). The two walls of a notch lie a thousandth of an edge apart, and
 // a displacement formulation degenerates there; so a stopped crack is seen and resumes at the lower propagation strength, but
 // does not redistribute stress before it goes through.
 class Solid {
  public:
-  Solid(std::shared_ptr<const SurfaceMesh> clean, Real edge_length, Real root_volume)
-      : clean_(std::move(clean)), edge_length_(edge_length), root_volume_(root_volume) {}
+  Solid(std::shared_ptr<const SurfaceMesh> clean, const RootScale& root) : clean_(std::move(clean)), root_(root) {}
 
   const SurfaceMesh& mesh() const { return *clean_; }
   const std::shared_ptr<const SurfaceMesh>& shared_mesh() const { return clean_; }
-  Real edge_length() const { return edge_length_; }    // target edge h, m
-  Real root_volume() const { return root_volume_; }    // of the scene body this came from, m^3
+  const RootScale& root() const { return root_; }
   std::vector<CrackSheet> partial;                     // cracks that stopped inside
 
   const std::vector<std::uint32_t>& twins();
@@ -35,7 +40,7 @@ class Solid {
 
  private:
   std::shared_ptr<const SurfaceMesh> clean_;
-  Real edge_length_, root_volume_;
+  RootScale root_;
   std::vector<std::uint32_t> twins_;
   std::unique_ptr<TriangleBvh> bvh_;
   std::unique_ptr<SurfaceRecovery> recovery_;

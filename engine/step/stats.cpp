@@ -24,6 +24,7 @@ Json crack_json(const CrackRecord& c) {
   Json j{{"id", c.id}, {"resumed", c.resumed}, {"seed", vector_json(c.seed)}, {"stress", c.stress}, {"outcome", c.outcome},
          {"ladder_level", c.ladder_level}, {"steps", c.steps}, {"area", c.area}, {"removed_volume", c.removed_volume},
          {"fragments", c.fragments}};
+  if (c.net_section_stress != 0) j["net_section_stress"] = c.net_section_stress;
   if (!c.reason.empty()) j["reason"] = c.reason;
   return j;
 }

@@ -74,6 +74,7 @@ max_cracks = 3
 max_fragments = 50
 min_fragment_volume = 1e-3
 max_generation = 2
+net_section = false
 speed = 0.25
 [camera]
 eye = [1, 1, 1]
@@ -132,6 +133,7 @@ material_view = "table"
   EXPECT_EQ(scene.fracture.max_fragments, 50);
   EXPECT_EQ(scene.fracture.min_fragment_volume, 1e-3);
   EXPECT_EQ(scene.fracture.max_generation, 2);
+  EXPECT_FALSE(scene.fracture.net_section);
   EXPECT_EQ(scene.fracture.speed, 0.25);
   EXPECT_FALSE(scene.camera.automatic);
   EXPECT_EQ(scene.camera.eye, (Vec3{1, 1, 1}));
