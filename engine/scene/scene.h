@@ -96,7 +96,7 @@ struct SceneContact {
 };
 
 struct SceneSolver {
-  Real tolerance = 1e-6;  // relative residual
+  Real tolerance = 1e-4;  // relative residual
   int max_iterations = 300;
 };
 

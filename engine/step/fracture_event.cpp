@@ -159,7 +159,8 @@ void Event::resume(const CrackField& field) {
         grown = resume_crack(pieces_[i].tree(), field, sheet, growth_);
       }
       CrackRecord record;
-      break_ligament(pieces_[i].tree(), field, grown, record);
+      // Worth its cost only under a load that could start a crack.
+      if (result_.strongest.stress.value > options_.strength) break_ligament(pieces_[i].tree(), field, grown, record);
       const bool grew = grown.outcome == GrowthOutcome::kComplete ||
                         (grown.outcome == GrowthOutcome::kArrested && grown.sheet.position.size() > sheet.position.size());
       if (!grew) {

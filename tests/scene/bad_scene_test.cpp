@@ -71,7 +71,7 @@ TEST_F(BadScene, PropagationStrengthAboveInitiationIsRefusedAtTheKeyThatWasGiven
       "the strength");
   EXPECT_EQ(
       problem(kBall + "material = {preset = \"glass\", strength = 1e6}\n"),
-      "scene.toml:4:42: body.material.strength: value 1000000 not allowed; allowed range 1.125e+07 to 1e+12 Pa, from "
+      "scene.toml:4:42: body.material.strength: value 1000000 not allowed; allowed range 1.3e+06 to 1e+12 Pa, from "
       "the propagation_strength");
 }
 
