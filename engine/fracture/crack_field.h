@@ -7,8 +7,8 @@
 namespace sherd {
 
 struct PrincipalStress {
-  Real value = 0;    // largest principal stress, Pa, tension positive
-  Vec3 direction;    // unit eigenvector; its sign carries no meaning
+  Real value = 0;  // largest principal stress, Pa, tension positive
+  Vec3 direction;  // unit eigenvector; its sign carries no meaning
 };
 
 // Implemented by the elastostatic stage, and by synthetic fields in the tests.

@@ -5,7 +5,8 @@
 namespace sherd {
 namespace {
 
-CrackSeed make_seed(const SurfaceMesh& mesh, const SurfaceRecovery& recovery, const StressState& state, std::uint32_t vertex) {
+CrackSeed make_seed(const SurfaceMesh& mesh, const SurfaceRecovery& recovery, const StressState& state,
+                    std::uint32_t vertex) {
   const std::uint32_t corner = state.worst_corner(vertex);
   const Eigen3 e = eigen_symmetric(state.corner_stress()[corner]);
   return {mesh.vertices[vertex], recovery.corners()[corner].normal, {e.value[0], e.vector[0]}, vertex};
@@ -28,7 +29,8 @@ std::vector<CrackSeed> find_seeds(const SurfaceMesh& mesh, const SurfaceRecovery
   const std::size_t n = mesh.vertex_count();
   std::vector<Real> value(n, 0);
   for (std::uint32_t v = 0; v < n; ++v)
-    if (state.worst_corner(v) != kNone) value[v] = eigen_symmetric(state.corner_stress()[state.worst_corner(v)]).value[0];
+    if (state.worst_corner(v) != kNone)
+      value[v] = eigen_symmetric(state.corner_stress()[state.worst_corner(v)]).value[0];
   std::vector<bool> maximal(n, true);
   for (const Triangle& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {

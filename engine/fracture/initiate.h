@@ -1,5 +1,5 @@
-// Where cracks start (paper 6.3, algorithm 2): surface vertices whose largest principal stress exceeds the strength and is
-// maximal over their 1-ring.
+// Where cracks start (paper 6.3, algorithm 2): surface vertices whose largest principal stress exceeds the strength and
+// is maximal over their 1-ring.
 #pragma once
 #include "engine/fracture/grow.h"
 #include "engine/stress/stress.h"

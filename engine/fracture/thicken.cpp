@@ -9,6 +9,8 @@
 namespace sherd {
 namespace {
 
+constexpr Real kMaxStretch = 2;  // of the offset at a kink
+
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 Edge sorted(std::uint32_t a, std::uint32_t b) {
   return a < b ? Edge{a, b} : Edge{b, a};
@@ -85,14 +87,17 @@ Refined refine(const CrackSheet& sheet) {
 SurfaceMesh offset(const Refined& r, Real thickness) {
   const std::size_t n = r.position.size();
   Vec3Column normal(n);
+  std::vector<Real> area(n, 0);
   for (const Triangle& t : r.triangles) {
     const Vec3 a = cross(r.position[t[1]] - r.position[t[0]], r.position[t[2]] - r.position[t[0]]);
-    for (const std::uint32_t v : t) normal.add(v, a);
+    for (const std::uint32_t v : t) normal.add(v, a), area[v] += norm(a);
   }
   SurfaceMesh slab;
   std::vector<std::uint32_t> up(n), down(n);
   for (std::size_t v = 0; v < n; ++v) {
-    const Vec3 half = r.single[v] ? Vec3{} : 0.5 * thickness * normalized(normal[v]);
+    // Longer where the sheet bends, so that the slab's volume is thickness times area and not a cosine less.
+    const Real stretch = std::min(area[v] / std::max(norm(normal[v]), 1e-300), kMaxStretch);
+    const Vec3 half = r.single[v] ? Vec3{} : 0.5 * thickness * stretch * normalized(normal[v]);
     up[v] = static_cast<std::uint32_t>(slab.vertices.size());
     slab.vertices.push_back(r.position[v] + half);
     down[v] = up[v];
