@@ -7,8 +7,8 @@ namespace sherd {
 MassProperties mass_properties(const SurfaceMesh& mesh, Real density) {
   const Vec3 o = bounding_box(mesh).centre();
   Real volume = 0;
-  Vec3 first;    // int x dV
-  Mat3 second;   // int x x^T dV
+  Vec3 first;   // int x dV
+  Mat3 second;  // int x x^T dV
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const Vec3 a = mesh.corner(t, 0) - o, b = mesh.corner(t, 1) - o, c = mesh.corner(t, 2) - o, s = a + b + c;
     const Real v = dot(a, cross(b, c)) / 6.0;
@@ -31,6 +31,8 @@ Mat3 world_inertia(const Body& b) {
   return r * b.mass.inertia * transpose(r);
 }
 
-Mat3 world_inverse_inertia(const Body& b) { return b.fixed ? Mat3{} : inverse(world_inertia(b)); }
+Mat3 world_inverse_inertia(const Body& b) {
+  return b.fixed ? Mat3{} : inverse(world_inertia(b));
+}
 
 }  // namespace sherd

@@ -8,7 +8,9 @@ struct Quat {
   Real w = 1, x = 0, y = 0, z = 0;
   friend bool operator==(const Quat&, const Quat&) = default;
 };
-inline Quat conjugate(const Quat& q) { return {q.w, -q.x, -q.y, -q.z}; }
+inline Quat conjugate(const Quat& q) {
+  return {q.w, -q.x, -q.y, -q.z};
+}
 inline Quat operator*(const Quat& a, const Quat& b) {
   return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
           a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};

@@ -8,8 +8,8 @@
 namespace sherd {
 
 // How far the closed forms and the seven-point rule reach, in longest edges of the source triangle from its centroid.
-// Errors per panel (design notes, worst direction): 7 points at 3 edges 1.4e-6 | 6e-6 (value | gradient), 3 points at 8 edges
-// 1.9e-5 | 6e-5. Infinity for `closed_form` makes everything exact (tests).
+// Errors per panel (design notes, worst direction): 7 points at 3 edges 1.4e-6 | 6e-6 (value | gradient), 3 points at 8
+// edges 1.9e-5 | 6e-5. Infinity for `closed_form` makes everything exact (tests).
 struct QuadratureOptions {
   Real closed_form = 3;
   Real gauss7 = 8;
@@ -17,10 +17,10 @@ struct QuadratureOptions {
 
 struct Boundary {
   SurfaceMesh mesh;
-  std::vector<PanelFrame> panels;      // per triangle
+  std::vector<PanelFrame> panels;  // per triangle
   Vec3Column centroid;
-  std::vector<Real> near2, middle2;    // squared reach of the closed forms and of the 7-point rule, m^2
-  std::vector<Real> vertex_area;       // lumped: a third of the incident areas, m^2
+  std::vector<Real> near2, middle2;  // squared reach of the closed forms and of the 7-point rule, m^2
+  std::vector<Real> vertex_area;     // lumped: a third of the incident areas, m^2
   Real area = 0;
 
   Boundary(const SurfaceMesh& surface, const QuadratureOptions& options);

@@ -25,7 +25,8 @@ struct PairTerms {
 };
 
 template <std::size_t N>
-PairTerms gauss_pair(const PanelFrame& f, const Vec3& x, const std::array<TrianglePoint, N>& rule, const KernelConstants& c) {
+PairTerms gauss_pair(const PanelFrame& f, const Vec3& x, const std::array<TrianglePoint, N>& rule,
+                     const KernelConstants& c) {
   PairTerms out;
   for (const TrianglePoint& g : rule) {
     const Vec3 r = x - (f.vertex[0] * g.a + f.vertex[1] * g.b + f.vertex[2] * g.c);
@@ -105,6 +106,37 @@ void DenseOperator<Scalar>::apply(std::span<const Real> x, std::span<Real> y) co
     }
     y[i] = sum;
   });
+}
+
+template <class Scalar>
+void DenseOperator<Scalar>::apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const {
+  constexpr std::size_t kLanes = 16;  // vectors a pass: the matrix is read once for all of them
+  std::vector<Scalar> narrow(size_ * kLanes);
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    const std::size_t lanes = std::min(kLanes, count - first);
+    for (std::size_t i = 0; i < size_; ++i)
+      for (std::size_t k = 0; k < kLanes; ++k)
+        narrow[i * kLanes + k] = k < lanes ? static_cast<Scalar>(x[i * count + first + k]) : Scalar(0);
+    // A vertex's three rows together: six accumulators hide the latency of an addition.
+    parallel_for(size_ / 3, 16, [&](std::size_t p) {
+      const Scalar* row = matrix_.data() + 3 * p * size_;
+      Real sum[3][kLanes] = {};
+      for (std::size_t j0 = 0; j0 < size_; j0 += 256) {
+        const std::size_t j1 = std::min(j0 + 256, size_);
+        Scalar a[kLanes] = {}, b[kLanes] = {}, c[kLanes] = {};
+        for (std::size_t j = j0; j < j1; ++j)
+          for (std::size_t k = 0; k < kLanes; ++k) {
+            const Scalar v = narrow[j * kLanes + k];
+            a[k] += row[j] * v, b[k] += row[size_ + j] * v, c[k] += row[2 * size_ + j] * v;
+          }
+        for (std::size_t k = 0; k < kLanes; ++k)
+          sum[0][k] += static_cast<Real>(a[k]), sum[1][k] += static_cast<Real>(b[k]),
+              sum[2][k] += static_cast<Real>(c[k]);
+      }
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < lanes; ++k) y[(3 * p + i) * count + first + k] = sum[i][k];
+    });
+  }
 }
 
 template <class Scalar>

@@ -1,9 +1,10 @@
 // The direct formulation collocated at vertices, stored densely:
 //   (A u)(x_p) = D[u - u(x_p)] + 2 mu V_E[M u] - V_L[M u]  at every vertex x_p,
 // with D the Laplace double layer, V_E and V_L the Kelvin and Laplace single layers, M the tangential Guenter operator
-// (M u)_i = n_j d_i u_j - n_i d_j u_j. Equal to V_E[t] for the displacement u of a body with tractions t (Somigliana's identity
-// with the traction kernel integrated by parts; Kupradze 1979). Independent of mu. Annihilates rigid motions exactly, is exact
-// for affine u. Near and far field use the same form: the traction-kernel form agrees only over a closed surface.
+// (M u)_i = n_j d_i u_j - n_i d_j u_j. Equal to V_E[t] for the displacement u of a body with tractions t (Somigliana's
+// identity with the traction kernel integrated by parts; Kupradze 1979). Independent of mu. Annihilates rigid motions
+// exactly, is exact for affine u. Near and far field use the same form: the traction-kernel form agrees only over a
+// closed surface.
 #pragma once
 #include "engine/elastostatic/boundary.h"
 #include "engine/elastostatic/linear_operator.h"
@@ -17,6 +18,7 @@ class DenseOperator final : public LinearOperator {
   DenseOperator(const Boundary& boundary, Real nu);
   std::size_t size() const override { return size_; }
   void apply(std::span<const Real> x, std::span<Real> y) const override;
+  void apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const override;
   // The 3x3 block (p, p), for block-Jacobi.
   Mat3 diagonal_block(std::size_t p) const;
 

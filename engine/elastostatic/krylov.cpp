@@ -14,7 +14,9 @@ using Vector = std::vector<Real>;
 Real inner(std::span<const Real> a, std::span<const Real> b) {
   return parallel_sum<Real>(a.size(), kGrain, [&](std::size_t i) { return a[i] * b[i]; });
 }
-Real length(std::span<const Real> a) { return std::sqrt(inner(a, a)); }
+Real length(std::span<const Real> a) {
+  return std::sqrt(inner(a, a));
+}
 void add_scaled(std::span<Real> y, Real s, std::span<const Real> x) {
   for (std::size_t i = 0; i < y.size(); ++i) y[i] += s * x[i];
 }
@@ -25,7 +27,8 @@ void precondition(const Preconditioner& m, std::span<const Real> r, std::span<Re
     std::copy(r.begin(), r.end(), z.begin());
 }
 // r = b - A x; returns |r| / |b|.
-Real residual(const LinearOperator& a, std::span<const Real> b, std::span<const Real> x, std::span<Real> r, Real scale) {
+Real residual(const LinearOperator& a, std::span<const Real> b, std::span<const Real> x, std::span<Real> r,
+              Real scale) {
   a.apply(x, r);
   for (std::size_t i = 0; i < r.size(); ++i) r[i] = b[i] - r[i];
   return length(r) / scale;
@@ -121,7 +124,8 @@ KrylovResult gmres(const LinearOperator& a, const Preconditioner& m, std::span<c
   result.residual = residual(a, b, x, r, scale);
   ++result.products;
   // The estimate and the true residual part only by rounding unless the operator is singular.
-  if (result.residual > 10 * options.tolerance && result.status == KrylovStatus::kConverged) result.status = KrylovStatus::kBreakdown;
+  if (result.residual > 10 * options.tolerance && result.status == KrylovStatus::kConverged)
+    result.status = KrylovStatus::kBreakdown;
   return result;
 }
 
@@ -160,9 +164,12 @@ KrylovResult bicgstab(const LinearOperator& a, const Preconditioner& m, std::spa
     add_scaled(x, omega, sz);
     for (std::size_t i = 0; i < n; ++i) r[i] = s[i] - omega * t[i];
     result.residual = length(r) / scale;
-    if (!std::isfinite(result.residual) || !std::isfinite(alpha)) result.status = KrylovStatus::kBreakdown;
-    else if (result.residual <= options.tolerance) result.status = KrylovStatus::kConverged;
-    else if (omega == 0 || rho == 0) result.status = KrylovStatus::kBreakdown;
+    if (!std::isfinite(result.residual) || !std::isfinite(alpha))
+      result.status = KrylovStatus::kBreakdown;
+    else if (result.residual <= options.tolerance)
+      result.status = KrylovStatus::kConverged;
+    else if (omega == 0 || rho == 0)
+      result.status = KrylovStatus::kBreakdown;
   }
   if (result.status != KrylovStatus::kBreakdown) result.residual = residual(a, b, x, r, scale), ++result.products;
   return result;

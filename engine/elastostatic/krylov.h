@@ -9,14 +9,14 @@ namespace sherd {
 enum class KrylovStatus { kConverged, kMaxIterations, kBreakdown };
 
 struct KrylovOptions {
-  Real tolerance = 1e-4;    // of |b - A x| / |b|
+  Real tolerance = 1e-4;  // of |b - A x| / |b|
   int max_iterations = 300;
 };
 struct KrylovResult {
   KrylovStatus status = KrylovStatus::kConverged;
   int iterations = 0;
-  int products = 0;         // applications of A
-  Real residual = 0;        // true relative residual at the end
+  int products = 0;   // applications of A
+  Real residual = 0;  // true relative residual at the end
 };
 
 // z = M^-1 r; empty for none.

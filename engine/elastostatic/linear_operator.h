@@ -15,6 +15,9 @@ class LinearOperator {
   virtual std::size_t size() const = 0;  // rows = columns
   // y = A x, both of size(); same bits for any number of threads.
   virtual void apply(std::span<const Real> x, std::span<Real> y) const = 0;
+  // The same for `count` vectors stored row major (entry i of vector j at [i * count + j]); an operator that is bound
+  // by memory reads itself once for several of them. Defaults to one product a vector.
+  virtual void apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const;
 };
 
 }  // namespace sherd

@@ -1,6 +1,6 @@
-// Polynomial particular solutions of div sigma + b = 0 for b(x) = b0 + B (x - origin): exact, free, and without the volume or
-// Newton potential the paper uses (its eq. 4). Derived in closed form and checked symbolically: uniform, antisymmetric and
-// symmetric part of B separately.
+// Polynomial particular solutions of div sigma + b = 0 for b(x) = b0 + B (x - origin): exact, free, and without the
+// volume or Newton potential the paper uses (its eq. 4). Derived in closed form and checked symbolically: uniform,
+// antisymmetric and symmetric part of B separately.
 #pragma once
 #include "engine/load/load.h"
 #include "kernels/core/symmetric.h"

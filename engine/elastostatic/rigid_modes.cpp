@@ -42,6 +42,17 @@ std::array<Real, 6> RigidModes::coefficients(std::span<const Real> x) const {
   return c;
 }
 
+void CompletedOperator::apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const {
+  a_.apply_block(x, count, y);
+  const std::size_t n = size();
+  std::vector<Real> in(n), out(n);
+  for (std::size_t j = 0; j < count; ++j) {
+    for (std::size_t i = 0; i < n; ++i) in[i] = x[i * count + j], out[i] = y[i * count + j];
+    modes_.add(out, modes_.coefficients(in), kShift);
+    for (std::size_t i = 0; i < n; ++i) y[i * count + j] = out[i];
+  }
+}
+
 void RigidModes::add(std::span<Real> y, const std::array<Real, 6>& c, Real scale) const {
   for (std::size_t m = 0; m < 6; ++m)
     for (std::size_t i = 0; i < y.size(); ++i) y[i] += scale * c[m] * mode_[m][i];

@@ -23,7 +23,8 @@ class RigidModes {
 
 class CompletedOperator final : public LinearOperator {
  public:
-  // Positive like the spectrum of A (1/2 + compact on smooth bodies); 0.3 .. 0.5 gives the least condition number (measured, design notes section 3).
+  // Positive like the spectrum of A (1/2 + compact on smooth bodies); 0.3 .. 0.5 gives the least condition number
+  // (measured, design notes section 3).
   static constexpr Real kShift = 0.4;
   CompletedOperator(const LinearOperator& a, const RigidModes& modes) : a_(a), modes_(modes) {}
   std::size_t size() const override { return a_.size(); }
@@ -31,6 +32,7 @@ class CompletedOperator final : public LinearOperator {
     a_.apply(x, y);
     modes_.add(y, modes_.coefficients(x), kShift);
   }
+  void apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const override;
 
  private:
   const LinearOperator& a_;

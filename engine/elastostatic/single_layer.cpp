@@ -14,7 +14,8 @@ Vec3 closed_form(const PanelFrame& f, const Vec3& x, const Vec3& t, const Elasti
 }
 
 template <std::size_t N, class Density>
-Vec3 gauss(const PanelFrame& f, const Vec3& x, const std::array<TrianglePoint, N>& rule, const Density& density, const Elastic& m) {
+Vec3 gauss(const PanelFrame& f, const Vec3& x, const std::array<TrianglePoint, N>& rule, const Density& density,
+           const Elastic& m) {
   Vec3 u;
   for (const TrianglePoint& g : rule) {
     const Vec3 y = f.vertex[0] * g.a + f.vertex[1] * g.b + f.vertex[2] * g.c;
@@ -30,8 +31,10 @@ struct LoadPanel {
 };
 
 std::array<PanelFrame, 4> split(const PanelFrame& f) {
-  const Vec3 m0 = 0.5 * (f.vertex[0] + f.vertex[1]), m1 = 0.5 * (f.vertex[1] + f.vertex[2]), m2 = 0.5 * (f.vertex[2] + f.vertex[0]);
-  return {make_panel(f.vertex[0], m0, m2), make_panel(m0, f.vertex[1], m1), make_panel(m2, m1, f.vertex[2]), make_panel(m0, m1, m2)};
+  const Vec3 m0 = 0.5 * (f.vertex[0] + f.vertex[1]), m1 = 0.5 * (f.vertex[1] + f.vertex[2]),
+             m2 = 0.5 * (f.vertex[2] + f.vertex[0]);
+  return {make_panel(f.vertex[0], m0, m2), make_panel(m0, f.vertex[1], m1), make_panel(m2, m1, f.vertex[2]),
+          make_panel(m0, m1, m2)};
 }
 
 }  // namespace
@@ -53,7 +56,8 @@ Vec3Column load_potential(const Boundary& b, const Load& load, const ParticularS
       const Real d2 = distance2(x, panel.centroid) / panel.frame.longest2;
       const auto density = [&](const Vec3&) { return panel.traction; };
       u += d2 > middle2 ? gauss(panel.frame, x, kGauss3, density, m)
-                        : (d2 > near2 ? gauss(panel.frame, x, kGauss7, density, m) : closed_form(panel.frame, x, panel.traction, m));
+                        : (d2 > near2 ? gauss(panel.frame, x, kGauss7, density, m)
+                                      : closed_form(panel.frame, x, panel.traction, m));
     }
     if (!particular.zero() || !load.face_traction.empty())
       for (std::size_t t = 0; t < b.panels.size(); ++t) {

@@ -5,8 +5,8 @@
 
 namespace sherd {
 
-// V_E[t - sigma_p n](x) at every vertex, m. Load panels are constant; the polynomial traction of the particular solution is
-// integrated (four sub-panels near, Gauss points far), because one sample a triangle costs accuracy.
+// V_E[t - sigma_p n](x) at every vertex, m. Load panels are constant; the polynomial traction of the particular
+// solution is integrated (four sub-panels near, Gauss points far), because one sample a triangle costs accuracy.
 Vec3Column load_potential(const Boundary& boundary, const Load& load, const ParticularSolution& particular,
                           const Elastic& material, const QuadratureOptions& options);
 

@@ -7,11 +7,16 @@
 namespace sherd {
 
 ElasticBody::ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const ElasticOptions& options)
-    : material_(material), options_(options), boundary_(mesh, options.quadrature), modes_(boundary_.mesh.vertices, boundary_.vertex_area) {
-  const std::size_t n = 3 * mesh.vertex_count(), bytes = n * n * (options.double_storage ? sizeof(double) : sizeof(float));
+    : material_(material),
+      options_(options),
+      boundary_(mesh, options.quadrature),
+      modes_(boundary_.mesh.vertices, boundary_.vertex_area) {
+  const std::size_t n = 3 * mesh.vertex_count(),
+                    bytes = n * n * (options.double_storage ? sizeof(double) : sizeof(float));
   if (bytes > options.max_bytes) {
-    reason_ = fmt::format("{} triangles need a dense operator of {} MiB, more than the {} MiB allowed: raise edge_length",
-                          mesh.triangle_count(), bytes >> 20, options.max_bytes >> 20);
+    reason_ =
+        fmt::format("{} triangles need a dense operator of {} MiB, more than the {} MiB allowed: raise edge_length",
+                    mesh.triangle_count(), bytes >> 20, options.max_bytes >> 20);
     return;
   }
   if (options.double_storage)
@@ -30,6 +35,8 @@ void ElasticBody::build() {
     inverse_blocks_[p] = std::abs(d) > 1e-6 * scale * std::sqrt(scale) ? inverse(block) : Mat3::identity();
   }
   operator_ = std::move(dense);
+  completed_ = std::make_unique<CompletedOperator>(*operator_, modes_);
+  preconditioner_ = std::make_unique<Deflation>(*completed_, boundary_, inverse_blocks_, options_.deflation);
 }
 
 ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& particular) const {
@@ -51,13 +58,8 @@ ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& p
     s.reason = "the load is not finite";
     return s;
   }
-  const auto jacobi = [&](std::span<const Real> r, std::span<Real> z) {
-    for (std::size_t p = 0; p < n; ++p) {
-      const Vec3 v = inverse_blocks_[p] * Vec3{r[3 * p], r[3 * p + 1], r[3 * p + 2]};
-      z[3 * p] = v.x, z[3 * p + 1] = v.y, z[3 * p + 2] = v.z;
-    }
-  };
-  s.krylov = gmres(CompletedOperator(*operator_, modes_), jacobi, b, x, options_.krylov);
+  const auto precondition = [&](std::span<const Real> r, std::span<Real> z) { preconditioner_->apply(r, z); };
+  s.krylov = gmres(*completed_, precondition, b, x, options_.krylov);
   // The rigid part of the solution is arbitrary; its coefficient measures what did not balance.
   const std::array<Real, 6> c = modes_.coefficients(x);
   Real rigid2 = 0;

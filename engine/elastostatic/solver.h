@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "engine/elastostatic/deflation.h"
 #include "engine/elastostatic/krylov.h"
 #include "engine/elastostatic/rigid_modes.h"
 #include "engine/elastostatic/single_layer.h"
@@ -12,23 +13,24 @@ namespace sherd {
 struct ElasticOptions {
   QuadratureOptions quadrature;
   KrylovOptions krylov;
-  bool double_storage = false;   // of the dense operator; float storage costs 3e-8 .. 2e-6 of the stress
+  DeflationOptions deflation;
+  bool double_storage = false;  // of the dense operator; float storage costs 3e-8 .. 2e-6 of the stress
   std::size_t max_bytes = std::size_t{6} << 30;  // refuse larger dense operators
 };
 
 struct ElasticSolution {
   bool ok = false;
-  std::string reason;            // when not ok
-  Vec3Column displacement;       // of the homogeneous problem at vertices, m (add particular.displacement for the whole)
+  std::string reason;       // when not ok
+  Vec3Column displacement;  // of the homogeneous problem at vertices, m (add particular.displacement for the whole)
   KrylovResult krylov;
-  Real incompatibility = 0;      // |R^T W b'| / |b'|: what the completion absorbed of a load out of balance
+  Real incompatibility = 0;  // |R^T W b'| / |b'|: what the completion absorbed of a load out of balance
 };
 
 // Everything that depends on the mesh and the material alone: kept as long as the mesh lives, one solve per load.
 class ElasticBody {
  public:
-  // mesh: valid (see surface_mesh.h). Throws nothing for numerical trouble: ready() is false with reason() when the operator
-  // would not fit max_bytes.
+  // mesh: valid (see surface_mesh.h). Throws nothing for numerical trouble: ready() is false with reason() when the
+  // operator would not fit max_bytes.
   ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const ElasticOptions& options);
   bool ready() const { return operator_ != nullptr; }
   const std::string& reason() const { return reason_; }
@@ -38,7 +40,7 @@ class ElasticBody {
   const Boundary& boundary() const { return boundary_; }
   const Elastic& material() const { return material_; }
   const ElasticOptions& options() const { return options_; }
-  const LinearOperator& system() const { return *operator_; }   // without completion
+  const LinearOperator& system() const { return *operator_; }  // without completion
 
  private:
   template <class Scalar>
@@ -49,7 +51,9 @@ class ElasticBody {
   Boundary boundary_;
   RigidModes modes_;
   std::unique_ptr<LinearOperator> operator_;
-  std::vector<Mat3> inverse_blocks_;  // block-Jacobi preconditioner
+  std::unique_ptr<CompletedOperator> completed_;
+  std::vector<Mat3> inverse_blocks_;  // of the diagonal, for the preconditioner
+  std::unique_ptr<Deflation> preconditioner_;
   std::string reason_;
 };
 

@@ -69,13 +69,15 @@ BodyContact body_contact(const Body& body, const Body* other, const Contact& con
   if (duration <= 0)
     duration = contact.approach_speed <= resting_speed
                    ? options.time_step
-                   : std::max(hertz_duration(mass, radius_of_curvature, modulus, contact.approach_speed), options.min_duration);
+                   : std::max(hertz_duration(mass, radius_of_curvature, modulus, contact.approach_speed),
+                              options.min_duration);
   c.duration = duration;
   c.force = rotate(conjugate(body.pose.orientation), impulse) / duration;
   const Real diagonal = bounding_box(*body.mesh).diagonal();
   const Real least = options.min_patch_radius > 0 ? options.min_patch_radius : 0.02 * diagonal;
-  c.patch_radius = options.patch_radius > 0 ? options.patch_radius
-                                            : std::clamp(hertz_radius(norm(c.force), radius_of_curvature, modulus), least, 0.25 * diagonal);
+  c.patch_radius = options.patch_radius > 0
+                       ? options.patch_radius
+                       : std::clamp(hertz_radius(norm(c.force), radius_of_curvature, modulus), least, 0.25 * diagonal);
   return c;
 }
 

@@ -9,18 +9,19 @@
 namespace sherd {
 
 struct ContactLoadOptions {
-  Real time_step = 1e-3;        // s
-  Real duration = 0;            // s; 0: Hertz
-  Real min_duration = 1e-3;     // s; lower bound of the Hertz time. The default is the time step: what the simulation resolves
-  Real patch_radius = 0;        // m; 0: Hertz
-  Real min_patch_radius = 0;    // m; 0: 2 % of the bounding-box diagonal
+  Real time_step = 1e-3;  // s
+  Real duration = 0;      // s; 0: Hertz
+  Real min_duration =
+      1e-3;  // s; lower bound of the Hertz time. The default is the time step: what the simulation resolves
+  Real patch_radius = 0;      // m; 0: Hertz
+  Real min_patch_radius = 0;  // m; 0: 2 % of the bounding-box diagonal
 };
 
 // A contact seen from one body, material space.
 struct BodyContact {
-  Vec3 point;           // m
-  Vec3 force;           // N, on this body
-  Real duration = 0;    // s
+  Vec3 point;             // m
+  Vec3 force;             // N, on this body
+  Real duration = 0;      // s
   Real patch_radius = 0;  // m
 };
 
@@ -29,14 +30,15 @@ struct BodyContact {
 // impulse of a resting contact is weight * time_step, so its duration is the time step.
 BodyContact body_contact(const Body& body, const Body* other, const Contact& contact, Real radius_of_curvature,
                          const ContactLoadOptions& options);
-// Radius of curvature of the surface around a point, m: from the spread of the normals of the faces near it; never below
-// half the local edge length nor above the bounding-box diagonal (a flat face).
-Real curvature_radius(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh, const Vec3& point);
+// Radius of curvature of the surface around a point, m: from the spread of the normals of the faces near it; never
+// below half the local edge length nor above the bounding-box diagonal (a flat face).
+Real curvature_radius(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh,
+                      const Vec3& point);
 
 // The load of all contacts on one free body with the given mesh and mass. Inertia relief:
-// b(x) = -rho [F/m + alpha x d + omega x (omega x d)], d = x - centre, I alpha = moment - omega x (I omega), rho = mass/volume.
-// Weight and its reaction enter through the contact forces; free fall is stress free. `omega`: angular velocity in material
-// axes, rad/s; `mass` exactly of `mesh`, so that the load balances to rounding.
+// b(x) = -rho [F/m + alpha x d + omega x (omega x d)], d = x - centre, I alpha = moment - omega x (I omega), rho =
+// mass/volume. Weight and its reaction enter through the contact forces; free fall is stress free. `omega`: angular
+// velocity in material axes, rad/s; `mass` exactly of `mesh`, so that the load balances to rounding.
 Load make_load(const SurfaceMesh& mesh, const MassProperties& mass, std::span<const BodyContact> contacts,
                const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh, const Vec3& omega);
 

@@ -11,6 +11,8 @@ Real hertz_duration(Real mass, Real radius, Real modulus, Real speed) {
   return 2.87 * std::pow(mass * mass / (radius * modulus * modulus * speed), 0.2);
 }
 
-Real hertz_radius(Real force, Real radius, Real modulus) { return std::cbrt(3 * force * radius / (4 * modulus)); }
+Real hertz_radius(Real force, Real radius, Real modulus) {
+  return std::cbrt(3 * force * radius / (4 * modulus));
+}
 
 }  // namespace sherd

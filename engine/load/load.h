@@ -10,11 +10,11 @@ namespace sherd {
 // A force spread over a disc of the surface: t(x) = force * weight(|x - centre|) / normalisation on the faces marked in
 // `faces`, weight(r) = sqrt(1 - (r/radius)^2) (the Hertz pressure), 0 beyond the radius.
 struct ContactPatch {
-  Vec3 centre;                        // on the surface, m
-  Real radius = 0;                    // m
-  Vec3 force;                         // N
-  Real normalisation = 0;             // integral of the weight over the marked faces, m^2
-  std::vector<std::uint32_t> faces;   // ascending
+  Vec3 centre;                       // on the surface, m
+  Real radius = 0;                   // m
+  Vec3 force;                        // N
+  Real normalisation = 0;            // integral of the weight over the marked faces, m^2
+  std::vector<std::uint32_t> faces;  // ascending
 };
 
 // b(x) = constant + linear (x - origin), N/m^3, with div sigma + b = 0.
@@ -27,18 +27,18 @@ struct BodyForce {
 // Flat sub-triangles with constant traction; together the patches, resolved independently of the mesh.
 struct TractionPanels {
   std::vector<std::array<Vec3, 3>> corners;
-  Vec3Column traction;                // Pa
-  std::vector<std::uint32_t> face;    // the mesh triangle each lies in
+  Vec3Column traction;              // Pa
+  std::vector<std::uint32_t> face;  // the mesh triangle each lies in
   std::size_t size() const { return corners.size(); }
 };
 
 struct Load {
   TractionPanels panels;
   std::vector<ContactPatch> patches;
-  Vec3Column face_traction;           // constant traction per triangle of the mesh, Pa; empty: none
+  Vec3Column face_traction;  // constant traction per triangle of the mesh, Pa; empty: none
   BodyForce body_force;
-  Vec3 net_force;                     // of panels and body force together; zero to rounding after inertia relief, N
-  Vec3 net_moment;                    // about the centre of mass, N m
+  Vec3 net_force;   // of panels and body force together; zero to rounding after inertia relief, N
+  Vec3 net_moment;  // about the centre of mass, N m
 };
 
 // Traction of the patches and the face tractions at a point of face `face`, Pa.

@@ -44,7 +44,8 @@ int exact_side(const Vec3& o, const Vec3& d, const Vec3& p, const Vec3& q) {
   return (sum + (u[0] * v[1] - u[1] * v[0]) * d.z).sign();
 }
 
-// A line that meets the edge exactly: sign of e . (d x (q - p)) for the infinitesimal shift e = (1, i, i^2) of the origin.
+// A line that meets the edge exactly: sign of e . (d x (q - p)) for the infinitesimal shift e = (1, i, i^2) of the
+// origin.
 int perturbed_side(const Vec3& d, const Vec3& p, const Vec3& q) {
   Expansion e[3];
   for (int k = 0; k < 3; ++k) e[k] = Expansion::difference(q[k], p[k]);
@@ -173,8 +174,8 @@ void TriangleBvh::all_hits(const Vec3& origin, const Vec3& direction, Real t_min
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       const auto& c = corners_[order_[i]];
-      // Which side of the line each edge passes. The signs are exact and ties follow one perturbation of the origin, so a
-      // ray through an edge or a vertex crosses a closed surface as consistently as one beside it (watertight).
+      // Which side of the line each edge passes. The signs are exact and ties follow one perturbation of the origin, so
+      // a ray through an edge or a vertex crosses a closed surface as consistently as one beside it (watertight).
       int w[3];
       for (std::size_t k = 0; k < 3; ++k) w[k] = side_of_line(origin, direction, c[k], c[(k + 1) % 3]);
       const bool positive = w[0] > 0 && w[1] > 0 && w[2] > 0, negative = w[0] < 0 && w[1] < 0 && w[2] < 0;
@@ -186,13 +187,15 @@ void TriangleBvh::all_hits(const Vec3& origin, const Vec3& direction, Real t_min
       if (t >= t_min && t <= t_max) hits.push_back({t, order_[i]});
     }
   }
-  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.face < b.face; });
+  std::sort(hits.begin(), hits.end(),
+            [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.face < b.face; });
 }
 
 bool TriangleBvh::inside(const Vec3& p) const {
   if (nodes_.empty()) return false;
   const Box& b = nodes_[0].box;
-  if (p.x < b.low.x || p.y < b.low.y || p.z < b.low.z || p.x > b.high.x || p.y > b.high.y || p.z > b.high.z) return false;
+  if (p.x < b.low.x || p.y < b.low.y || p.z < b.low.z || p.x > b.high.x || p.y > b.high.y || p.z > b.high.z)
+    return false;
   static const Vec3 directions[3] = {{0.5377, 0.1834, 0.8234}, {-0.7273, 0.6343, 0.2621}, {0.2192, -0.9413, -0.2570}};
   std::vector<Hit> hits;
   int votes = 0;

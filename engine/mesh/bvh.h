@@ -1,5 +1,5 @@
-// Double-precision bounding volume hierarchy over the triangles of a mesh: the queries that decide geometry (fracture, cut,
-// remeshing). Embree (engine/mesh/embree_scene.h) is for bulk queries where float is enough.
+// Double-precision bounding volume hierarchy over the triangles of a mesh: the queries that decide geometry (fracture,
+// cut, remeshing). Embree (engine/mesh/embree_scene.h) is for bulk queries where float is enough.
 #pragma once
 #include <limits>
 #include <vector>
@@ -14,12 +14,12 @@ class TriangleBvh {
   explicit TriangleBvh(const SurfaceMesh& mesh);
 
   struct Hit {
-    Real t;              // origin + t * direction
+    Real t;  // origin + t * direction
     std::uint32_t face;
   };
   struct Closest {
     Vec3 point;
-    std::uint32_t face = kNone;   // kNone when nothing lies within the given distance
+    std::uint32_t face = kNone;  // kNone when nothing lies within the given distance
     Real distance2 = std::numeric_limits<Real>::infinity();
   };
 

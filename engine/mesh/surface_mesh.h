@@ -1,6 +1,6 @@
-// The one mesh type: a triangle soup with shared vertices, structure of arrays. A *valid* mesh (engine/mesh/validate.h) is closed,
-// 2-manifold, consistently oriented with outward normals, without degenerate triangles; every stage after loading expects
-// that. Cavities are further components oriented into the cavity.
+// The one mesh type: a triangle soup with shared vertices, structure of arrays. A *valid* mesh (engine/mesh/validate.h)
+// is closed, 2-manifold, consistently oriented with outward normals, without degenerate triangles; every stage after
+// loading expects that. Cavities are further components oriented into the cavity.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -18,8 +18,8 @@ enum class FaceKind : std::uint8_t { kOriginal = 0, kCrack = 1 };
 // Cold per-face columns (fracture, render and export read them; the solver does not). Each has one entry per triangle.
 struct FaceAttributes {
   std::vector<FaceKind> kind;
-  std::vector<std::int32_t> crack;    // crack id of a kCrack face, -1 otherwise
-  std::vector<std::int32_t> source;   // triangle of the input mesh an original face descends from, -1 otherwise
+  std::vector<std::int32_t> crack;   // crack id of a kCrack face, -1 otherwise
+  std::vector<std::int32_t> source;  // triangle of the input mesh an original face descends from, -1 otherwise
 
   void resize(std::size_t n) { kind.resize(n, FaceKind::kOriginal), crack.resize(n, -1), source.resize(n, -1); }
   void push_back_from(const FaceAttributes& other, std::size_t i) {
@@ -29,9 +29,9 @@ struct FaceAttributes {
 };
 
 struct SurfaceMesh {
-  Vec3Column vertices;              // metres
+  Vec3Column vertices;  // metres
   std::vector<Triangle> triangles;
-  FaceAttributes faces;             // same length as triangles
+  FaceAttributes faces;  // same length as triangles
 
   std::size_t vertex_count() const { return vertices.size(); }
   std::size_t triangle_count() const { return triangles.size(); }
@@ -67,7 +67,8 @@ Real signed_volume(const SurfaceMesh& mesh);
 // twin[3 t + k] is the directed edge opposite to edge k (corner k -> k+1) of triangle t, or kNone at a border.
 // Edges used by other than two opposite directions stay kNone; validate() counts them.
 std::vector<std::uint32_t> build_twins(const SurfaceMesh& mesh);
-// Component label per triangle, connected over twins, numbered in order of first triangle; returns the number of components.
+// Component label per triangle, connected over twins, numbered in order of first triangle; returns the number of
+// components.
 std::uint32_t label_components(const SurfaceMesh& mesh, std::vector<std::uint32_t>& label);
 
 }  // namespace sherd

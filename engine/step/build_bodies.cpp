@@ -15,13 +15,16 @@ void remesh_to(SurfaceMesh& mesh, Real edge_length, const std::string& name, std
   SurfaceMesh out;
   const RemeshReport report = remesh(mesh, options, out);
   if (report.status != RemeshStatus::kOk) {
-    messages.push_back(fmt::format("remeshing to {:.4g} m was refused ({}): the mesh is used as it is", edge_length, report.reason));
+    messages.push_back(
+        fmt::format("remeshing to {:.4g} m was refused ({}): the mesh is used as it is", edge_length, report.reason));
     return;
   }
   const MeshReport check = report_mesh(out);
-  if (!is_valid(check)) throw InputError(fmt::format("{}: remeshing gave an invalid surface:\n{}", name, to_text(check)));
-  messages.push_back(fmt::format("remeshed to {:.4g} m: {} triangles, least angle {:.1f} degrees, volume changed by {:+.3f} %", edge_length,
-                                 out.triangle_count(), report.min_angle, 100 * report.volume_change));
+  if (!is_valid(check))
+    throw InputError(fmt::format("{}: remeshing gave an invalid surface:\n{}", name, to_text(check)));
+  messages.push_back(
+      fmt::format("remeshed to {:.4g} m: {} triangles, least angle {:.1f} degrees, volume changed by {:+.3f} %",
+                  edge_length, out.triangle_count(), report.min_angle, 100 * report.volume_change));
   mesh = std::move(out);
 }
 
@@ -44,7 +47,8 @@ BuiltBody build_body(const SceneBody& s, BodyId id) {
   b.pose.position = s.position;
   if (s.anchor == Anchor::kBase) {
     Box box;
-    for (std::size_t i = 0; i < b.mesh->vertex_count(); ++i) box.grow(rotate(b.pose.orientation, b.mesh->vertices[i] - b.mass.centre));
+    for (std::size_t i = 0; i < b.mesh->vertex_count(); ++i)
+      box.grow(rotate(b.pose.orientation, b.mesh->vertices[i] - b.mass.centre));
     b.pose.position = s.position - Vec3{box.centre().x, box.low.y, box.centre().z};
   }
   b.velocity = s.velocity, b.angular_velocity = s.angular_velocity;

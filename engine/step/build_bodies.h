@@ -11,8 +11,8 @@ namespace sherd {
 
 struct BuiltBody {
   Body body;
-  Real edge_length = 0;              // h used, m
-  std::vector<std::string> messages; // what was done to the mesh
+  Real edge_length = 0;               // h used, m
+  std::vector<std::string> messages;  // what was done to the mesh
 };
 
 // Throws InputError naming the scene body and the file when a mesh cannot be used.

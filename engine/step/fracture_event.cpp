@@ -108,12 +108,21 @@ void Event::break_ligament(const TriangleBvh& body, const CrackField& field, Gro
 }
 
 bool Event::apply(std::size_t index, GrowthResult&& grown, CrackRecord& record) {
-  record.ladder_level = grown.ladder_level, record.steps = grown.steps, record.area = grown.area, record.reason = grown.reason;
+  record.ladder_level = grown.ladder_level, record.steps = grown.steps, record.area = grown.area,
+  record.reason = grown.reason;
   switch (grown.outcome) {
-    case GrowthOutcome::kRejectedSeed: record.outcome = "rejected"; return false;
-    case GrowthOutcome::kFailed: record.outcome = "failed"; return false;
-    case GrowthOutcome::kComplete: record.outcome = "complete"; break;
-    case GrowthOutcome::kArrested: record.outcome = "arrested"; break;
+    case GrowthOutcome::kRejectedSeed:
+      record.outcome = "rejected";
+      return false;
+    case GrowthOutcome::kFailed:
+      record.outcome = "failed";
+      return false;
+    case GrowthOutcome::kComplete:
+      record.outcome = "complete";
+      break;
+    case GrowthOutcome::kArrested:
+      record.outcome = "arrested";
+      break;
   }
   const auto slab = thicken(grown.sheet, options_.thickness, record.id, record.reason);
   if (!slab) {
@@ -161,13 +170,15 @@ void Event::resume(const CrackField& field) {
       CrackRecord record;
       // Worth its cost only under a load that could start a crack.
       if (result_.strongest.stress.value > options_.strength) break_ligament(pieces_[i].tree(), field, grown, record);
-      const bool grew = grown.outcome == GrowthOutcome::kComplete ||
-                        (grown.outcome == GrowthOutcome::kArrested && grown.sheet.position.size() > sheet.position.size());
+      const bool grew =
+          grown.outcome == GrowthOutcome::kComplete ||
+          (grown.outcome == GrowthOutcome::kArrested && grown.sheet.position.size() > sheet.position.size());
       if (!grew) {
         pieces_[i].partial.push_back(sheet);
         continue;
       }
-      record.id = next_id_++, record.resumed = true, record.seed = sheet.position[0], record.stress = sheet.reference_stress;
+      record.id = next_id_++, record.resumed = true, record.seed = sheet.position[0],
+      record.stress = sheet.reference_stress;
       const bool split = apply(i, std::move(grown), record);
       if (record.outcome == "failed" || record.outcome == "cut refused") pieces_[i].partial.push_back(sheet);
       result_.cracks.push_back(std::move(record));
@@ -258,7 +269,8 @@ void Event::finish() {
 }  // namespace
 
 FractureResult fracture_solid(Solid& solid, const MassProperties& clean_mass, const Elastic& material,
-                              std::span<const BodyContact> contacts, const Vec3& omega, const FractureOptions& options) {
+                              std::span<const BodyContact> contacts, const Vec3& omega,
+                              const FractureOptions& options) {
   FractureResult result;
   result.triangles = solid.mesh().triangle_count();
   result.volume_before = clean_mass.volume;

@@ -1,4 +1,5 @@
-// One fracture event (paper algorithm 1, lines 3 to 16, for one body): load, solve, stress, seeds, cracks, cuts, remeshing.
+// One fracture event (paper algorithm 1, lines 3 to 16, for one body): load, solve, stress, seeds, cracks, cuts,
+// remeshing.
 #pragma once
 #include <span>
 #include <string>
@@ -12,10 +13,10 @@ namespace sherd {
 
 struct CrackRecord {
   std::int32_t id = 0;
-  bool resumed = false;         // grown on from an earlier, stopped crack
-  Vec3 seed;                    // m, material space
-  Real stress = 0;              // at the seed, Pa
-  std::string outcome;          // "complete", "arrested", "rejected", "failed", "cut refused"
+  bool resumed = false;  // grown on from an earlier, stopped crack
+  Vec3 seed;             // m, material space
+  Real stress = 0;       // at the seed, Pa
+  std::string outcome;   // "complete", "arrested", "rejected", "failed", "cut refused"
   std::string reason;
   int ladder_level = 0, steps = 0;
   Real net_section_stress = 0;  // mean tension the rest of the section would bear, Pa; 0: not asked
@@ -31,38 +32,38 @@ struct EventSeconds {
 
 struct FractureOptions {
   ElasticOptions elastic;
-  Real thickness = 0;            // crack thickness, m
-  Real strength = 0;             // initiation, Pa
-  Real propagation_strength = 0; // Pa
+  Real thickness = 0;             // crack thickness, m
+  Real strength = 0;              // initiation, Pa
+  Real propagation_strength = 0;  // Pa
   Real speed = 0.5;
-  bool net_section = true;       // let the ligament of a stopped crack fail, see net_section.h
+  bool net_section = true;  // let the ligament of a stopped crack fail, see net_section.h
   int max_cracks = 8;
-  std::size_t max_pieces = 200;  // the body may fall into
+  std::size_t max_pieces = 200;     // the body may fall into
   Real min_fragment_volume = 1e-4;  // of the scene body's volume
   std::int32_t first_crack_id = 0;
 };
 
 struct FragmentShape {
-  std::shared_ptr<const SurfaceMesh> clean;   // for stress
-  std::shared_ptr<const SurfaceMesh> shown;   // with the notches of the partial cracks; same as clean without any
+  std::shared_ptr<const SurfaceMesh> clean;  // for stress
+  std::shared_ptr<const SurfaceMesh> shown;  // with the notches of the partial cracks; same as clean without any
   std::vector<CrackSheet> partial;
 };
 
 struct FractureResult {
   // Of the solve:
   bool solved = false;
-  std::string reason;            // when not solved
+  std::string reason;  // when not solved
   KrylovResult krylov;
   std::size_t triangles = 0, panels = 0;
   Real incompatibility = 0;
-  CrackSeed strongest;           // largest principal stress on the surface
-  std::size_t seeds = 0;         // local maxima above the strength
+  CrackSeed strongest;    // largest principal stress on the surface
+  std::size_t seeds = 0;  // local maxima above the strength
   // Of the fracture:
-  bool changed = false;          // shapes differ from the body as it was
+  bool changed = false;               // shapes differ from the body as it was
   std::vector<FragmentShape> shapes;  // one: the body with a notch or hole; more: its fragments
   std::vector<CrackRecord> cracks;
   Real volume_before = 0, volume_after = 0, removed_volume = 0, dust_volume = 0;  // m^3, before remeshing
-  Real remeshed_volume = 0;      // of the shapes after remeshing, m^3
+  Real remeshed_volume = 0;                                                       // of the shapes after remeshing, m^3
   std::size_t remesh_refused = 0;
   EventSeconds seconds;
 };

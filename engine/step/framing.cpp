@@ -15,9 +15,12 @@ View frame_box(const Box& box, const View& settings) {
   // The least distance at which all eight corners are inside the picture.
   Real distance = 0;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 corner = Vec3{i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z} - view.target;
+    const Vec3 corner =
+        Vec3{i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z} -
+        view.target;
     const Real depth = dot(corner, direction);
-    distance = std::max({distance, depth + std::abs(dot(corner, right)) / tan_horizontal, depth + std::abs(dot(corner, up)) / tan_vertical});
+    distance = std::max({distance, depth + std::abs(dot(corner, right)) / tan_horizontal,
+                         depth + std::abs(dot(corner, up)) / tan_vertical});
   }
   view.eye = view.target + direction * (1.08 * std::max(distance, 1e-6));
   return view;

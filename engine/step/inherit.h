@@ -6,9 +6,9 @@
 
 namespace sherd {
 
-// Sets density, mass properties, pose and velocities of `fragments` (mesh set, material space of the parent) so that mass,
-// linear and angular momentum equal the parent's: the volume the cracks remove is made up by density, and all fragments move
-// with the one rigid motion that has the parent's momenta. Exact to rounding.
+// Sets density, mass properties, pose and velocities of `fragments` (mesh set, material space of the parent) so that
+// mass, linear and angular momentum equal the parent's: the volume the cracks remove is made up by density, and all
+// fragments move with the one rigid motion that has the parent's momenta. Exact to rounding.
 void inherit_motion(const Body& parent, std::vector<Body>& fragments);
 
 struct Momenta {

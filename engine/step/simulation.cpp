@@ -17,9 +17,9 @@
 namespace sherd {
 namespace {
 
-// A load this far below what a body can bear cannot break it; its stress is not solved. Estimates, not bounds: a wall of thickness
-// T = 2 V/A bears a bending force of order strength * T^2 (plates: 6 M / T^2 with M of order F / 2 pi), and no tension
-// exceeds the mean contact pressure by much away from it.
+// A load this far below what a body can bear cannot break it; its stress is not solved. Estimates, not bounds: a wall
+// of thickness T = 2 V/A bears a bending force of order strength * T^2 (plates: 6 M / T^2 with M of order F / 2 pi),
+// and no tension exceeds the mean contact pressure by much away from it.
 constexpr Real kBendingShare = 0.05, kPressureShare = 0.5;
 
 // Meshes' dense operators kept at a time, bytes.
@@ -30,9 +30,13 @@ Colour palette(std::size_t i) {
                                    {0.66f, 0.70f, 0.60f}, {0.72f, 0.66f, 0.74f}, {0.78f, 0.72f, 0.55f}};
   return colours[i % std::size(colours)];
 }
-Colour to_colour(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+Colour to_colour(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 
-std::size_t operator_bytes(const SurfaceMesh& mesh) { return 9 * mesh.vertex_count() * mesh.vertex_count() * sizeof(float); }
+std::size_t operator_bytes(const SurfaceMesh& mesh) {
+  return 9 * mesh.vertex_count() * mesh.vertex_count() * sizeof(float);
+}
 
 }  // namespace
 
@@ -69,7 +73,10 @@ struct Simulation::Impl {
     for (std::size_t i = 0; i < s.bodies.size(); ++i) {
       BuiltBody built = build_body(s.bodies[i], BodyId{next_id++});
       for (const std::string& m : built.messages) record.messages.push_back(built.body.name + ": " + m);
-      companions.push_back({std::make_shared<Solid>(built.body.mesh, RootScale{built.edge_length, built.body.mass.volume, bounding_box(*built.body.mesh).diagonal()}), i, 0, 0});
+      companions.push_back(
+          {std::make_shared<Solid>(built.body.mesh, RootScale{built.edge_length, built.body.mass.volume,
+                                                              bounding_box(*built.body.mesh).diagonal()}),
+           i, 0, 0});
       bodies.push_back(std::move(built.body));
     }
     ground = {s.ground.enabled, s.ground.height, s.ground.restitution, s.ground.friction};
@@ -137,7 +144,8 @@ std::string Simulation::Impl::reason_to_skip(std::size_t i, const std::vector<Bo
     pressure = std::max(pressure, norm(c.force) / (std::numbers::pi * c.patch_radius * c.patch_radius));
   }
   const Real wall = 2 * body.mass.volume / surface_area(companions[i].solid->mesh());
-  if (force < kBendingShare * body.material.strength * wall * wall && pressure < kPressureShare * body.material.strength)
+  if (force < kBendingShare * body.material.strength * wall * wall &&
+      pressure < kPressureShare * body.material.strength)
     return "load below strength";
   return {};
 }
@@ -150,7 +158,8 @@ FractureOptions Simulation::Impl::fracture_options(std::size_t i) const {
   o.strength = body.material.strength;
   o.propagation_strength = body.material.propagation_strength;
   // The default follows the scene body, not the fragment, so that all cracks of a body look alike.
-  o.thickness = body.material.crack_thickness > 0 ? body.material.crack_thickness : 1e-3 * companions[i].solid->root().diagonal;
+  o.thickness =
+      body.material.crack_thickness > 0 ? body.material.crack_thickness : 1e-3 * companions[i].solid->root().diagonal;
   o.speed = scene.fracture.speed;
   o.net_section = scene.fracture.net_section;
   o.max_cracks = scene.fracture.max_cracks;
@@ -179,8 +188,7 @@ void Simulation::Impl::apply_shapes(std::size_t i, FractureResult& result, Event
     }
     fragments.push_back(std::move(b));
     const bool clean_kept = shape.clean == companion.solid->shared_mesh();
-    auto solid = clean_kept ? companion.solid
-                            : std::make_shared<Solid>(shape.clean, companion.solid->root());
+    auto solid = clean_kept ? companion.solid : std::make_shared<Solid>(shape.clean, companion.solid->root());
     solid->partial = std::move(shape.partial);
     solids.push_back({std::move(solid), companion.scene_body, 0, 0});
   }
@@ -195,7 +203,8 @@ void Simulation::Impl::apply_shapes(std::size_t i, FractureResult& result, Event
   const Real size = start_box.diagonal(), speed = norm(parent.velocity) + size * norm(parent.angular_velocity) + 1e-12;
   event.mass_error = std::abs(after.mass - before.mass) / before.mass;
   event.momentum_error = norm(after.linear - before.linear) / (before.mass * speed);
-  event.angular_error = norm(after.angular - before.angular) / (before.mass * speed * (size + norm(parent.pose.position)));
+  event.angular_error =
+      norm(after.angular - before.angular) / (before.mass * speed * (size + norm(parent.pose.position)));
   bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(i));
   companions.erase(companions.begin() + static_cast<std::ptrdiff_t>(i));
   bodies.insert(bodies.begin() + static_cast<std::ptrdiff_t>(i), fragments.begin(), fragments.end());
@@ -217,7 +226,8 @@ bool Simulation::Impl::fracture(std::size_t i, std::vector<BodyContact>&& loads,
   event.result = fracture_solid(solid, mass, material, loads, omega, fracture_options(i));
   event.contacts = std::move(loads);
   for (const CrackRecord& c : event.result.cracks) next_crack = std::max(next_crack, c.id + 1);
-  next_crack += static_cast<std::int32_t>(event.result.shapes.size());  // ids used for stopped cracks that split a piece
+  next_crack +=
+      static_cast<std::int32_t>(event.result.shapes.size());  // ids used for stopped cracks that split a piece
   ++step.solves, step.solver_iterations += static_cast<std::size_t>(event.result.krylov.iterations);
   step.cracks += event.result.cracks.size();
   const bool changed = event.result.changed;
@@ -251,7 +261,8 @@ void Simulation::Impl::advance() {
   }
   ++steps;
   step.step = steps, step.time = time();
-  step.pairs_near = stats.contact.pairs_near, step.contacts = contacts.size(), step.fields_built = stats.contact.fields_built;
+  step.pairs_near = stats.contact.pairs_near, step.contacts = contacts.size(),
+  step.fields_built = stats.contact.fields_built;
   step.contact_iterations = stats.iterations, step.asleep = stats.asleep;
   {
     const Stopwatch watch(step.fracture_seconds);
@@ -283,12 +294,19 @@ void Simulation::Impl::advance() {
   record.steps.push_back(std::move(step));
 }
 
-Simulation::Simulation(const Scene& scene, const SimulationOptions& options) : impl_(std::make_unique<Impl>(scene, options)) {}
+Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
+    : impl_(std::make_unique<Impl>(scene, options)) {}
 Simulation::~Simulation() = default;
 
-bool Simulation::done() const { return impl_->time() >= impl_->scene.duration - 0.5 * impl_->scene.time_step; }
-void Simulation::step() { impl_->advance(); }
-Real Simulation::time() const { return impl_->time(); }
+bool Simulation::done() const {
+  return impl_->time() >= impl_->scene.duration - 0.5 * impl_->scene.time_step;
+}
+void Simulation::step() {
+  impl_->advance();
+}
+Real Simulation::time() const {
+  return impl_->time();
+}
 
 std::size_t Simulation::frame_count() const {
   return static_cast<std::size_t>(std::floor(impl_->scene.duration * impl_->scene.frame_rate + 1e-9)) + 1;
@@ -368,14 +386,19 @@ View Simulation::material_view() const {
   return frame_box(box, v);
 }
 
-std::string Simulation::stats_json() const { return to_json(impl_->record); }
-std::vector<std::string> Simulation::messages() const { return impl_->record.messages; }
+std::string Simulation::stats_json() const {
+  return to_json(impl_->record);
+}
+std::vector<std::string> Simulation::messages() const {
+  return impl_->record.messages;
+}
 
 std::string Simulation::status() const {
   std::string text = fmt::format("t = {:.3f} s, {} bodies", impl_->time(), impl_->bodies.size());
   if (!impl_->record.events.empty()) {
     const EventRecord& e = impl_->record.events.back();
-    text += fmt::format(", last event {} at {:.3f} s: {:.3g} MPa", e.body, e.time, e.result.strongest.stress.value * 1e-6);
+    text +=
+        fmt::format(", last event {} at {:.3f} s: {:.3g} MPa", e.body, e.time, e.result.strongest.stress.value * 1e-6);
   }
   return text;
 }

@@ -9,7 +9,7 @@
 namespace sherd {
 
 struct SimulationOptions {
-  int threads = 0;       // 0: all processors; the result does not depend on it
+  int threads = 0;  // 0: all processors; the result does not depend on it
 };
 
 class Simulation {
@@ -18,19 +18,20 @@ class Simulation {
   Simulation(const Scene& scene, const SimulationOptions& options);
   ~Simulation();
 
-  bool done() const;         // the scene's duration is reached
+  bool done() const;  // the scene's duration is reached
   void step();
-  Real time() const;         // s
+  Real time() const;  // s
   // True at the start and whenever simulated time has passed the next frame; snapshot() then serves it.
   bool frame_due() const;
-  Frame snapshot();          // of the world, now; consumes the due frame
+  Frame snapshot();  // of the world, now; consumes the due frame
   // The scene's material_view body and its fragments in their material space, translucent; for the frame last served.
   Frame material_snapshot() const;
-  View view() const;         // the scene's camera, or one that frames the bodies and where they fall
+  View view() const;  // the scene's camera, or one that frames the bodies and where they fall
   View material_view() const;
   std::size_t frame_count() const;  // frames the whole run serves
 
-  // What happened, as JSON. Everything under a key "seconds" may differ between runs; all else is the same in every run.
+  // What happened, as JSON. Everything under a key "seconds" may differ between runs; all else is the same in every
+  // run.
   std::string stats_json() const;
   // One line for a person: time, bodies, the last event.
   std::string status() const;

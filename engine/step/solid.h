@@ -1,5 +1,5 @@
-// What the fracture of a body needs besides its motion: the mesh the stress is solved on, cracks that stopped inside it, and
-// the parts that depend on the mesh alone, built when first asked for and kept as long as the mesh lives.
+// What the fracture of a body needs besides its motion: the mesh the stress is solved on, cracks that stopped inside
+// it, and the parts that depend on the mesh alone, built when first asked for and kept as long as the mesh lives.
 #pragma once
 #include <memory>
 #include <vector>
@@ -17,10 +17,10 @@ struct RootScale {
   Real diagonal = 0;     // of its bounding box, m
 };
 
-// A crack that stopped inside is kept as a sheet beside the *clean* mesh (without its notch): the stress is solved on the
-// clean mesh and the sheet grows on from it later (design O13). The two walls of a notch lie a thousandth of an edge apart, and
-// a displacement formulation degenerates there; so a stopped crack is seen and resumes at the lower propagation strength, but
-// does not redistribute stress before it goes through.
+// A crack that stopped inside is kept as a sheet beside the *clean* mesh (without its notch): the stress is solved on
+// the clean mesh and the sheet grows on from it later (design O13). The two walls of a notch lie a thousandth of an
+// edge apart, and a displacement formulation degenerates there; so a stopped crack is seen and resumes at the lower
+// propagation strength, but does not redistribute stress before it goes through.
 class Solid {
  public:
   Solid(std::shared_ptr<const SurfaceMesh> clean, const RootScale& root) : clean_(std::move(clean)), root_(root) {}
@@ -28,7 +28,7 @@ class Solid {
   const SurfaceMesh& mesh() const { return *clean_; }
   const std::shared_ptr<const SurfaceMesh>& shared_mesh() const { return clean_; }
   const RootScale& root() const { return root_; }
-  std::vector<CrackSheet> partial;                     // cracks that stopped inside
+  std::vector<CrackSheet> partial;  // cracks that stopped inside
 
   const std::vector<std::uint32_t>& twins();
   const TriangleBvh& bvh();
@@ -36,7 +36,7 @@ class Solid {
   // Built with the first call: one material a body.
   const ElasticBody& elastic(const Elastic& material, const ElasticOptions& options);
   bool has_elastic() const { return elastic_ != nullptr; }
-  void drop_elastic() { elastic_.reset(); }            // frees the dense operator
+  void drop_elastic() { elastic_.reset(); }  // frees the dense operator
 
  private:
   std::shared_ptr<const SurfaceMesh> clean_;

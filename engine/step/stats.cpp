@@ -7,13 +7,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vector_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+Json vector_json(const Vec3& v) {
+  return Json::array({v.x, v.y, v.z});
+}
 
 Json step_json(const StepRecord& s) {
-  Json j{{"step", s.step}, {"time", s.time}, {"bodies", s.bodies}, {"asleep", s.asleep}, {"triangles", s.triangles},
-         {"pairs_near", s.pairs_near}, {"contacts", s.contacts}, {"contact_iterations", s.contact_iterations},
-         {"fields_built", s.fields_built}, {"solves", s.solves}, {"solver_iterations", s.solver_iterations},
-         {"cracks", s.cracks}, {"new_bodies", s.fragments}};
+  Json j{{"step", s.step},
+         {"time", s.time},
+         {"bodies", s.bodies},
+         {"asleep", s.asleep},
+         {"triangles", s.triangles},
+         {"pairs_near", s.pairs_near},
+         {"contacts", s.contacts},
+         {"contact_iterations", s.contact_iterations},
+         {"fields_built", s.fields_built},
+         {"solves", s.solves},
+         {"solver_iterations", s.solver_iterations},
+         {"cracks", s.cracks},
+         {"new_bodies", s.fragments}};
   j["skipped"] = Json::object();
   for (const auto& [reason, count] : s.skipped) j["skipped"][reason] = count;
   j["seconds"] = {{"rigid", s.rigid_seconds}, {"fracture", s.fracture_seconds}};
@@ -21,8 +32,15 @@ Json step_json(const StepRecord& s) {
 }
 
 Json crack_json(const CrackRecord& c) {
-  Json j{{"id", c.id}, {"resumed", c.resumed}, {"seed", vector_json(c.seed)}, {"stress", c.stress}, {"outcome", c.outcome},
-         {"ladder_level", c.ladder_level}, {"steps", c.steps}, {"area", c.area}, {"removed_volume", c.removed_volume},
+  Json j{{"id", c.id},
+         {"resumed", c.resumed},
+         {"seed", vector_json(c.seed)},
+         {"stress", c.stress},
+         {"outcome", c.outcome},
+         {"ladder_level", c.ladder_level},
+         {"steps", c.steps},
+         {"area", c.area},
+         {"removed_volume", c.removed_volume},
          {"fragments", c.fragments}};
   if (c.net_section_stress != 0) j["net_section_stress"] = c.net_section_stress;
   if (!c.reason.empty()) j["reason"] = c.reason;
@@ -34,11 +52,18 @@ Json event_json(const EventRecord& e) {
   Json j{{"step", e.step}, {"time", e.time}, {"body", e.body}, {"body_id", e.body_id}};
   j["contacts"] = Json::array();
   for (const BodyContact& c : e.contacts)
-    j["contacts"].push_back({{"point", vector_json(c.point)}, {"force", vector_json(c.force)}, {"duration", c.duration},
+    j["contacts"].push_back({{"point", vector_json(c.point)},
+                             {"force", vector_json(c.force)},
+                             {"duration", c.duration},
                              {"patch_radius", c.patch_radius}});
-  j["solve"] = {{"ok", r.solved}, {"triangles", r.triangles}, {"load_panels", r.panels}, {"iterations", r.krylov.iterations},
-                {"residual", r.krylov.residual}, {"incompatibility", r.incompatibility},
-                {"max_principal", r.strongest.stress.value}, {"max_principal_at", vector_json(r.strongest.position)},
+  j["solve"] = {{"ok", r.solved},
+                {"triangles", r.triangles},
+                {"load_panels", r.panels},
+                {"iterations", r.krylov.iterations},
+                {"residual", r.krylov.residual},
+                {"incompatibility", r.incompatibility},
+                {"max_principal", r.strongest.stress.value},
+                {"max_principal_at", vector_json(r.strongest.position)},
                 {"seeds", r.seeds}};
   if (!r.reason.empty()) j["solve"]["reason"] = r.reason;
   j["cracks"] = Json::array();
@@ -47,13 +72,14 @@ Json event_json(const EventRecord& e) {
     Real area_volume = 0;
     for (const CrackRecord& c : r.cracks) area_volume += c.removed_volume;
     j["new_bodies"] = e.new_bodies;
-    j["volume"] = {{"before", r.volume_before}, {"after", r.volume_after}, {"removed", r.removed_volume}, {"dust", r.dust_volume},
-                   {"cracks", area_volume}, {"after_remeshing", r.remeshed_volume}};
+    j["volume"] = {{"before", r.volume_before}, {"after", r.volume_after}, {"removed", r.removed_volume},
+                   {"dust", r.dust_volume},     {"cracks", area_volume},   {"after_remeshing", r.remeshed_volume}};
     j["remesh_refused"] = r.remesh_refused;
     j["conservation"] = {{"mass", e.mass_error}, {"momentum", e.momentum_error}, {"angular_momentum", e.angular_error}};
   }
   const EventSeconds& s = r.seconds;
-  j["seconds"] = {{"assemble", s.assemble}, {"solve", s.solve}, {"stress", s.stress}, {"grow", s.grow}, {"cut", s.cut}, {"remesh", s.remesh}};
+  j["seconds"] = {{"assemble", s.assemble}, {"solve", s.solve}, {"stress", s.stress},
+                  {"grow", s.grow},         {"cut", s.cut},     {"remesh", s.remesh}};
   return j;
 }
 
@@ -66,7 +92,10 @@ Json totals_json(const RunRecord& r) {
   }
   for (const EventRecord& e : r.events)
     for (const CrackRecord& c : e.result.cracks) ++outcomes[c.outcome];
-  Json j{{"steps", r.steps.size()}, {"solves", solves}, {"cracks", cracks}, {"new_bodies", fragments},
+  Json j{{"steps", r.steps.size()},
+         {"solves", solves},
+         {"cracks", cracks},
+         {"new_bodies", fragments},
          {"bodies", r.steps.empty() ? 0 : r.steps.back().bodies}};
   j["crack_outcomes"] = outcomes;
   j["skipped"] = skipped;
@@ -79,10 +108,19 @@ Json seconds_json(const RunRecord& r) {
   EventSeconds t;
   for (const EventRecord& e : r.events) {
     const EventSeconds& s = e.result.seconds;
-    t.assemble += s.assemble, t.solve += s.solve, t.stress += s.stress, t.grow += s.grow, t.cut += s.cut, t.remesh += s.remesh;
+    t.assemble += s.assemble, t.solve += s.solve, t.stress += s.stress, t.grow += s.grow, t.cut += s.cut,
+        t.remesh += s.remesh;
   }
-  return {{"prepare", r.prepare_seconds}, {"rigid", rigid}, {"fracture", fracture}, {"assemble", t.assemble}, {"solve", t.solve},
-          {"stress", t.stress}, {"grow", t.grow}, {"cut", t.cut}, {"remesh", t.remesh}, {"threads", r.threads}};
+  return {{"prepare", r.prepare_seconds},
+          {"rigid", rigid},
+          {"fracture", fracture},
+          {"assemble", t.assemble},
+          {"solve", t.solve},
+          {"stress", t.stress},
+          {"grow", t.grow},
+          {"cut", t.cut},
+          {"remesh", t.remesh},
+          {"threads", r.threads}};
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace sherd {
 
 struct StepRecord {
   std::size_t step = 0;
-  Real time = 0;                    // s, at the end of the step
+  Real time = 0;  // s, at the end of the step
   std::size_t bodies = 0, asleep = 0, triangles = 0;
   std::size_t pairs_near = 0, contacts = 0, fields_built = 0;
   int contact_iterations = 0;
@@ -26,7 +26,7 @@ struct EventRecord {
   std::string body;
   std::uint32_t body_id = 0;
   std::vector<BodyContact> contacts;
-  FractureResult result;            // shapes are emptied
+  FractureResult result;  // shapes are emptied
   std::vector<std::uint32_t> new_bodies;
   Real mass_error = 0, momentum_error = 0, angular_error = 0;  // relative, fragments against the parent
 };

@@ -22,7 +22,8 @@ std::vector<std::uint32_t> smooth_twins(const SurfaceMesh& mesh, Real feature_an
 }
 
 // Patch of a corner: its faces, grown by rings of smooth neighbours until enough vertices carry a fit of the degree.
-void grow_patch(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& smooth, std::size_t wanted, SurfaceCorner& c) {
+void grow_patch(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& smooth, std::size_t wanted,
+                SurfaceCorner& c) {
   std::vector<std::uint32_t> faces = c.faces;
   c.patch.assign(1, c.vertex);
   const auto add_vertices = [&](std::size_t from) {
@@ -62,14 +63,15 @@ void choose_frame(const SurfaceMesh& mesh, const SurfaceCorner& c, Vec3& a, Vec3
   b = cross(n, a);
 }
 
-// Interpolatory weighted least squares in monomials x^i y^j, 1 <= i + j <= degree, by Gram-Schmidt in order of increasing
-// degree; a monomial whose remaining norm falls below `drop` of its own is left out (one-element strips, corners). Gives the
-// rows of the two first derivatives at the origin for the points 1..n-1; returns false when a first derivative was dropped.
-bool fit_rows(const std::vector<Real>& x, const std::vector<Real>& y, const std::vector<Real>& weight, int degree, Real drop,
-              std::vector<Real>& row_x, std::vector<Real>& row_y) {
+// Interpolatory weighted least squares in monomials x^i y^j, 1 <= i + j <= degree, by Gram-Schmidt in order of
+// increasing degree; a monomial whose remaining norm falls below `drop` of its own is left out (one-element strips,
+// corners). Gives the rows of the two first derivatives at the origin for the points 1..n-1; returns false when a first
+// derivative was dropped.
+bool fit_rows(const std::vector<Real>& x, const std::vector<Real>& y, const std::vector<Real>& weight, int degree,
+              Real drop, std::vector<Real>& row_x, std::vector<Real>& row_y) {
   const std::size_t n = x.size();
-  std::vector<std::vector<Real>> q;           // orthonormal columns
-  std::vector<std::vector<Real>> r;           // r[k][j]: coefficient of q_j in kept column k
+  std::vector<std::vector<Real>> q;  // orthonormal columns
+  std::vector<std::vector<Real>> r;  // r[k][j]: coefficient of q_j in kept column k
   bool kept_x = false, kept_y = false;
   for (int d = 1; d <= degree; ++d)
     for (int j = 0; j <= d; ++j) {
@@ -170,7 +172,8 @@ SurfaceRecovery::SurfaceRecovery(const SurfaceMesh& mesh, const RecoveryOptions&
       c.faces.push_back(t);
       const std::uint32_t next = smooth[3 * t + k], before = smooth[3 * t + (k + 2) % 3];
       for (const std::uint32_t candidate : {next == kNone ? kNone : 3 * (next / 3) + (next % 3 + 1) % 3, before})
-        if (candidate != kNone && corner_of_[candidate] == kNone) corner_of_[candidate] = id, stack.push_back(candidate);
+        if (candidate != kNone && corner_of_[candidate] == kNone)
+          corner_of_[candidate] = id, stack.push_back(candidate);
     }
     std::sort(c.faces.begin(), c.faces.end());
     corners_.push_back(std::move(c));
@@ -182,7 +185,8 @@ SurfaceRecovery::SurfaceRecovery(const SurfaceMesh& mesh, const RecoveryOptions&
   });
 }
 
-std::vector<Sym3> SurfaceRecovery::stress(const Vec3Column& displacement, const Vec3Column& traction, const Elastic& m) const {
+std::vector<Sym3> SurfaceRecovery::stress(const Vec3Column& displacement, const Vec3Column& traction,
+                                          const Elastic& m) const {
   std::vector<Sym3> out(corners_.size());
   const Real young = 2 * m.mu * (1 + m.nu);
   parallel_for(corners_.size(), 256, [&](std::size_t i) {
@@ -197,9 +201,11 @@ std::vector<Sym3> SurfaceRecovery::stress(const Vec3Column& displacement, const 
     const Vec3 n = c.normal, e1 = any_perpendicular(n), e2 = cross(n, e1), t = traction[i];
     const Real e11 = dot(e1, g * e1), e22 = dot(e2, g * e2), e12 = 0.5 * (dot(e1, g * e2) + dot(e2, g * e1));
     const Real plane = young / (1 - m.nu * m.nu), tn = dot(t, n), pressure = m.nu / (1 - m.nu) * tn;
-    const Real s11 = plane * (e11 + m.nu * e22) + pressure, s22 = plane * (e22 + m.nu * e11) + pressure, s12 = 2 * m.mu * e12;
-    const Mat3 s = outer(e1, e1) * s11 + outer(e2, e2) * s22 + (outer(e1, e2) + outer(e2, e1)) * s12 + outer(n, n) * tn +
-                   (outer(e1, n) + outer(n, e1)) * dot(t, e1) + (outer(e2, n) + outer(n, e2)) * dot(t, e2);
+    const Real s11 = plane * (e11 + m.nu * e22) + pressure, s22 = plane * (e22 + m.nu * e11) + pressure,
+               s12 = 2 * m.mu * e12;
+    const Mat3 s = outer(e1, e1) * s11 + outer(e2, e2) * s22 + (outer(e1, e2) + outer(e2, e1)) * s12 +
+                   outer(n, n) * tn + (outer(e1, n) + outer(n, e1)) * dot(t, e1) +
+                   (outer(e2, n) + outer(n, e2)) * dot(t, e2);
     out[i] = symmetric_part(s);
   });
   return out;

@@ -18,7 +18,8 @@ struct LayerGradient {
 };
 
 template <std::size_t N>
-LayerGradient gauss(const PanelFrame& f, const Vec3& x, const Vec3& q, const std::array<TrianglePoint, N>& rule, const Elastic& m) {
+LayerGradient gauss(const PanelFrame& f, const Vec3& x, const Vec3& q, const std::array<TrianglePoint, N>& rule,
+                    const Elastic& m) {
   LayerGradient g;
   for (const TrianglePoint& p : rule) {
     const Vec3 r = x - (f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c);
@@ -41,7 +42,8 @@ LayerGradient closed_form(const PanelFrame& f, const Vec3& x, const Vec3& q, con
   return g;
 }
 
-LayerGradient layer_gradient(const PanelFrame& f, const Vec3& x, const Vec3& q, const Elastic& m, const QuadratureOptions& o) {
+LayerGradient layer_gradient(const PanelFrame& f, const Vec3& x, const Vec3& q, const Elastic& m,
+                             const QuadratureOptions& o) {
   const Real d2 = distance2(x, f.centroid()) / f.longest2;
   if (d2 > o.gauss7 * o.gauss7) return gauss(f, x, q, kGauss3, m);
   if (d2 > o.closed_form * o.closed_form) return gauss(f, x, q, kGauss7, m);
@@ -50,9 +52,13 @@ LayerGradient layer_gradient(const PanelFrame& f, const Vec3& x, const Vec3& q, 
 
 }  // namespace
 
-StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recovery, const TriangleBvh& bvh, const Load& load,
-                         const ParticularSolution& particular, const ElasticSolution& solution)
-    : body_(body), recovery_(recovery), bvh_(bvh), particular_(particular), displacement_(solution.displacement),
+StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recovery, const TriangleBvh& bvh,
+                         const Load& load, const ParticularSolution& particular, const ElasticSolution& solution)
+    : body_(body),
+      recovery_(recovery),
+      bvh_(bvh),
+      particular_(particular),
+      displacement_(solution.displacement),
       load_traction_(load.panels.traction) {
   const Boundary& b = body.boundary();
   const std::size_t triangles = b.panels.size();
@@ -72,7 +78,8 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
     density_.set(t, traction - mu * (2 * body.material().mu));
   });
   for (const auto& c : load.panels.corners) load_panels_.push_back(make_panel(c[0], c[1], c[2]));
-  for (std::size_t v = 0; v < displacement_.size(); ++v) displacement_.add(v, particular_.displacement(b.mesh.vertices[v]));
+  for (std::size_t v = 0; v < displacement_.size(); ++v)
+    displacement_.add(v, particular_.displacement(b.mesh.vertices[v]));
   Vec3Column traction(recovery.corners().size());
   for (std::size_t c = 0; c < traction.size(); ++c) {
     const SurfaceCorner& corner = recovery.corners()[c];
@@ -102,7 +109,8 @@ Sym3 StressState::interior(const Vec3& x) const {
     g += l.kelvin + (outer(guenter_[t], l.inverse) + s * dot(l.inverse, f.normal) - outer(s * l.inverse, f.normal)) *
                         (1 / (4 * std::numbers::pi));
   }
-  for (std::size_t i = 0; i < load_panels_.size(); ++i) g += layer_gradient(load_panels_[i], x, load_traction_[i], m, o).kelvin;
+  for (std::size_t i = 0; i < load_panels_.size(); ++i)
+    g += layer_gradient(load_panels_[i], x, load_traction_[i], m, o).kelvin;
   return kelvin::hooke(g, m) + particular_.stress(x);
 }
 

@@ -1,4 +1,5 @@
-// The stress stage: from a solved load to stress at surface vertices and at any point inside (paper 4.3, last paragraph).
+// The stress stage: from a solved load to stress at surface vertices and at any point inside (paper 4.3, last
+// paragraph).
 #pragma once
 #include "engine/elastostatic/solver.h"
 #include "engine/mesh/bvh.h"

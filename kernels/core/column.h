@@ -1,4 +1,5 @@
-// Structure-of-arrays columns. A hot loop reads x, y, z as three plain arrays; everything else uses operator[] and set().
+// Structure-of-arrays columns. A hot loop reads x, y, z as three plain arrays; everything else uses operator[] and
+// set().
 #pragma once
 #include <cstdint>
 #include <vector>

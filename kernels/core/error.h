@@ -19,11 +19,11 @@ class InternalError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
-#define SHERD_CHECK(condition, ...)                                                                             \
-  do {                                                                                                          \
-    if (!(condition))                                                                                           \
-      throw ::sherd::InternalError(fmt::format("{}:{}: {} ({})", __FILE__, __LINE__, fmt::format(__VA_ARGS__), \
-                                               #condition));                                                    \
+#define SHERD_CHECK(condition, ...)                                                                 \
+  do {                                                                                              \
+    if (!(condition))                                                                               \
+      throw ::sherd::InternalError(                                                                 \
+          fmt::format("{}:{}: {} ({})", __FILE__, __LINE__, fmt::format(__VA_ARGS__), #condition)); \
   } while (false)
 
 }  // namespace sherd

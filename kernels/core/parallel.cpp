@@ -12,14 +12,13 @@ struct ThreadLimit::Impl {
 };
 
 ThreadLimit::ThreadLimit(int threads) {
-  const std::size_t count = threads > 0 ? static_cast<std::size_t>(threads)
-                                        : static_cast<std::size_t>(tbb::info::default_concurrency());
+  const std::size_t count =
+      threads > 0 ? static_cast<std::size_t>(threads) : static_cast<std::size_t>(tbb::info::default_concurrency());
   impl_ = std::make_unique<Impl>(Impl{tbb::global_control(tbb::global_control::max_allowed_parallelism, count)});
 }
 ThreadLimit::~ThreadLimit() = default;
 
-void parallel_for_chunks(std::size_t n, std::size_t grain,
-                         const std::function<void(std::size_t, std::size_t)>& body) {
+void parallel_for_chunks(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (n == 0) return;
   const std::size_t chunks = (n + grain - 1) / grain;
   const auto run = [&](std::size_t c) { body(c * grain, (c + 1) * grain < n ? (c + 1) * grain : n); };

@@ -1,4 +1,5 @@
-// SplitMix64: a small counter-based generator with fixed results on every platform (std distributions differ between them).
+// SplitMix64: a small counter-based generator with fixed results on every platform (std distributions differ between
+// them).
 #pragma once
 #include <cstdint>
 

@@ -32,7 +32,9 @@ Eigen3 eigen_symmetric(const Sym3& s) {
       }
   }
   int order[3] = {0, 1, 2};
-  const auto by_value = [&](int i, int j) { if (a[order[i]][order[i]] < a[order[j]][order[j]]) std::swap(order[i], order[j]); };
+  const auto by_value = [&](int i, int j) {
+    if (a[order[i]][order[i]] < a[order[j]][order[j]]) std::swap(order[i], order[j]);
+  };
   by_value(0, 1), by_value(1, 2), by_value(0, 1);
   Eigen3 e;
   for (int i = 0; i < 3; ++i) e.value[i] = a[order[i]][order[i]], e.vector[i] = v.column(order[i]);

@@ -7,8 +7,14 @@ namespace sherd {
 struct Sym3 {
   Real xx{}, yy{}, zz{}, yz{}, xz{}, xy{};
 
-  Sym3& operator+=(const Sym3& b) { xx += b.xx, yy += b.yy, zz += b.zz, yz += b.yz, xz += b.xz, xy += b.xy; return *this; }
-  Sym3& operator*=(Real s) { xx *= s, yy *= s, zz *= s, yz *= s, xz *= s, xy *= s; return *this; }
+  Sym3& operator+=(const Sym3& b) {
+    xx += b.xx, yy += b.yy, zz += b.zz, yz += b.yz, xz += b.xz, xy += b.xy;
+    return *this;
+  }
+  Sym3& operator*=(Real s) {
+    xx *= s, yy *= s, zz *= s, yz *= s, xz *= s, xy *= s;
+    return *this;
+  }
   friend Sym3 operator+(Sym3 a, const Sym3& b) { return a += b; }
   friend Sym3 operator-(const Sym3& a, const Sym3& b) { return a + b * -1.0; }
   friend Sym3 operator*(Sym3 a, Real s) { return a *= s; }

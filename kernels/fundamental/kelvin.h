@@ -31,15 +31,19 @@ SHERD_HD inline Sym3 hooke(const Mat3& g, const Elastic& m) {
   return s;
 }
 
-inline Sym3 stress(const Vec3& r, const Vec3& f, const Elastic& m) { return hooke(gradient(r, f, m), m); }
+inline Sym3 stress(const Vec3& r, const Vec3& f, const Elastic& m) {
+  return hooke(gradient(r, f, m), m);
+}
 
 // Traction on the plane with unit normal n through the target.
-inline Vec3 traction(const Vec3& r, const Vec3& f, const Vec3& n, const Elastic& m) { return stress(r, f, m) * n; }
+inline Vec3 traction(const Vec3& r, const Vec3& f, const Vec3& n, const Elastic& m) {
+  return stress(r, f, m) * n;
+}
 
 // Newton potential of a constant body force b as a surface integral: u_i = closed integral of W_ijk b_j n_k dS, with
 // e = (y - x)/l, solves div sigma + b = 0. W_ijk = e_k d_ij/(8 pi mu) - alpha/(32 pi mu) chi_ijk,
-// chi_ijk = d_ij e_k + d_ik e_j + d_jk e_i - e_i e_j e_k (the paper prints the last term with a plus sign, which violates
-// div_k W_ijk = U_ij by 30 %), alpha = 1/(2(1-nu)).
+// chi_ijk = d_ij e_k + d_ik e_j + d_jk e_i - e_i e_j e_k (the paper prints the last term with a plus sign, which
+// violates div_k W_ijk = U_ij by 30 %), alpha = 1/(2(1-nu)).
 SHERD_HD inline Vec3 newton(const Vec3& e, const Vec3& b, const Vec3& n, const Elastic& m) {
   const Real a = 1 / (8 * std::numbers::pi * m.mu), alpha = 1 / (2 * (1 - m.nu));
   const Real en = dot(e, n), eb = dot(e, b), bn = dot(b, n);

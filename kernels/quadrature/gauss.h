@@ -7,14 +7,13 @@
 namespace sherd {
 
 struct TrianglePoint {
-  Real a, b, c;   // barycentric coordinates
+  Real a, b, c;  // barycentric coordinates
   Real weight;
 };
 
 // Exact for degree 2.
-inline constexpr std::array<TrianglePoint, 3> kGauss3 = {{{2.0 / 3, 1.0 / 6, 1.0 / 6, 1.0 / 3},
-                                                          {1.0 / 6, 2.0 / 3, 1.0 / 6, 1.0 / 3},
-                                                          {1.0 / 6, 1.0 / 6, 2.0 / 3, 1.0 / 3}}};
+inline constexpr std::array<TrianglePoint, 3> kGauss3 = {
+    {{2.0 / 3, 1.0 / 6, 1.0 / 6, 1.0 / 3}, {1.0 / 6, 2.0 / 3, 1.0 / 6, 1.0 / 3}, {1.0 / 6, 1.0 / 6, 2.0 / 3, 1.0 / 3}}};
 // Exact for degree 5 (Radon).
 inline constexpr Real kRadonA = 0.47014206410511508977, kRadonB = 0.10128650732345633880;
 inline constexpr Real kRadonWa = 0.13239415278850618074, kRadonWb = 0.12593918054482715260;

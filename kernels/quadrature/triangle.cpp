@@ -12,8 +12,8 @@ constexpr Real kClamp = 1e-28;
 // Line integrals over one edge; hv is the vector from the foot on the edge's line to the target.
 struct EdgeTerms {
   Vec3 hv;
-  Real p = 0;                    // in-plane distance of the target inside the edge
-  Real log = 0;                  // L = integral of 1/l
+  Real p = 0;    // in-plane distance of the target inside the edge
+  Real log = 0;  // L = integral of 1/l
   Real sa = 0, sb = 0, ra = 0, rb = 0, h2 = 0;
 };
 
@@ -99,8 +99,8 @@ void integrate_panel_gradient(const PanelFrame& f, const Vec3& x, Side side, Pan
   const Real d = plane.d, clamp = kClamp * f.longest2;
   Real inverse = -d * plane.omega;
   Vec3 sum_ml, omega_k;
-  Mat3 second;               // A,jk without the normal part: - sum_e m_j gL_k
-  Mat3 mrk[3];               // sum_e m_i R_jk, indexed [k][i][j]
+  Mat3 second;  // A,jk without the normal part: - sum_e m_j gL_k
+  Mat3 mrk[3];  // sum_e m_i R_jk, indexed [k][i][j]
   for (int e = 0; e < 3; ++e) {
     const EdgeTerms t = edge_terms(f, e, x, d);
     const Vec3 &m = f.outward[e], &tg = f.tangent[e];
@@ -113,7 +113,8 @@ void integrate_panel_gradient(const PanelFrame& f, const Vec3& x, Side side, Pan
     }
     const Real e1 = 1 / t.ra - 1 / t.rb, e2 = t.log - cd;
     const Vec3 log_gradient = t.hv * -e0 + tg * e1;
-    const Mat3 r = Mat3::identity() * t.log - (outer(t.hv, t.hv) * e0 - (outer(t.hv, tg) + outer(tg, t.hv)) * e1 + outer(tg, tg) * e2);
+    const Mat3 r = Mat3::identity() * t.log -
+                   (outer(t.hv, t.hv) * e0 - (outer(t.hv, tg) + outer(tg, t.hv)) * e1 + outer(tg, tg) * e2);
     inverse += t.p * t.log;
     sum_ml += m * t.log;
     omega_k += m * dot(log_gradient, n) - n * dot(log_gradient, m);

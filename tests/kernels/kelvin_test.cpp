@@ -12,7 +12,9 @@ namespace {
 const Elastic kMaterial{2.5, 0.27};
 const Vec3 kForce{0.3, -1.1, 0.7};
 
-Vec3 random_point(Random& r) { return {r.uniform(0.4, 1.2), r.uniform(-1.2, -0.4), r.uniform(0.3, 1)}; }
+Vec3 random_point(Random& r) {
+  return {r.uniform(0.4, 1.2), r.uniform(-1.2, -0.4), r.uniform(0.3, 1)};
+}
 
 TEST(Kelvin, GradientIsTheDerivativeOfTheDisplacement) {
   Random random(1);
@@ -23,7 +25,8 @@ TEST(Kelvin, GradientIsTheDerivativeOfTheDisplacement) {
     for (int k = 0; k < 3; ++k) {
       Vec3 e{};
       e[k] = h;
-      const Vec3 d = (kelvin::displacement(r + e, kForce, kMaterial) - kelvin::displacement(r - e, kForce, kMaterial)) / (2 * h);
+      const Vec3 d =
+          (kelvin::displacement(r + e, kForce, kMaterial) - kelvin::displacement(r - e, kForce, kMaterial)) / (2 * h);
       for (int i = 0; i < 3; ++i) EXPECT_NEAR(g[i][k], d[i], 1e-9);
     }
   }
@@ -38,7 +41,8 @@ TEST(Kelvin, StressIsDivergenceFreeAwayFromTheForce) {
     for (int k = 0; k < 3; ++k) {
       Vec3 e{};
       e[k] = h;
-      const Mat3 a = to_matrix(kelvin::stress(r - e, kForce, kMaterial)), b = to_matrix(kelvin::stress(r + e, kForce, kMaterial));
+      const Mat3 a = to_matrix(kelvin::stress(r - e, kForce, kMaterial)),
+                 b = to_matrix(kelvin::stress(r + e, kForce, kMaterial));
       for (int i = 0; i < 3; ++i) divergence[i] += (b[i][k] - a[i][k]) / (2 * h);
     }
     EXPECT_LT(norm(divergence), 2e-7);  // h^2 times third derivatives of order 10

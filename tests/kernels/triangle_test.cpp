@@ -20,9 +20,11 @@ struct Reference {
   Vec3 shape;
 };
 
-// Adaptive: splits a sub-triangle in four while it is closer than four of its own diameters; 7-point rule then errs by less
-// than 1e-7 at distance 4 per level of |integrand|, so a further global level of subdivision (two more here) gives 1e-12.
-void integrate_reference(const PanelFrame& f, const std::array<Vec3, 3>& c, const Vec3& x, int extra, int depth, Reference& r) {
+// Adaptive: splits a sub-triangle in four while it is closer than four of its own diameters; 7-point rule then errs by
+// less than 1e-7 at distance 4 per level of |integrand|, so a further global level of subdivision (two more here) gives
+// 1e-12.
+void integrate_reference(const PanelFrame& f, const std::array<Vec3, 3>& c, const Vec3& x, int extra, int depth,
+                         Reference& r) {
   const Vec3 centre = (c[0] + c[1] + c[2]) / 3.0;
   const Real diameter = std::max({distance(c[0], c[1]), distance(c[1], c[2]), distance(c[2], c[0])});
   const bool near = distance(x, centre) < 4 * diameter;
@@ -51,8 +53,8 @@ std::vector<Vec3> targets(const PanelFrame& f) {
     x.push_back(c + f.normal * d);
     x.push_back(c - f.normal * d);
     x.push_back(f.vertex[1] + f.normal * d);
-    x.push_back(0.5 * (f.vertex[1] + f.vertex[2]) + f.outward[1] * d);   // in the plane, off an edge
-    x.push_back(f.vertex[0] - f.tangent[0] * d);                          // on the extension of an edge
+    x.push_back(0.5 * (f.vertex[1] + f.vertex[2]) + f.outward[1] * d);  // in the plane, off an edge
+    x.push_back(f.vertex[0] - f.tangent[0] * d);                        // on the extension of an edge
     x.push_back(f.vertex[2] + f.normal * d + f.outward[0] * (0.7 * d));
   }
   return x;
@@ -116,7 +118,8 @@ TEST(PanelIntegral, FiniteAtVerticesEdgesAndOnThePanel) {
       PanelGradients g;
       integrate_panel(f, x, side, v);
       integrate_panel_gradient(f, x, side, g);
-      EXPECT_TRUE(std::isfinite(v.inverse) && std::isfinite(v.dyad[0][1]) && is_finite(v.shape_angle) && is_finite(g.inverse));
+      EXPECT_TRUE(std::isfinite(v.inverse) && std::isfinite(v.dyad[0][1]) && is_finite(v.shape_angle) &&
+                  is_finite(g.inverse));
       EXPECT_GT(v.inverse, 0);
     }
 }
@@ -124,7 +127,8 @@ TEST(PanelIntegral, FiniteAtVerticesEdgesAndOnThePanel) {
 TEST(PanelIntegral, SolidAnglesOfAClosedSurfaceSumToMinusFourPiInsideAndZeroOutside) {
   const Vec3 v[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-  for (const auto& [x, expected] : {std::pair{Vec3{0.1, 0.2, 0.15}, -4 * std::numbers::pi}, {Vec3{0.7, 0.9, 0.3}, 0.0}}) {
+  for (const auto& [x, expected] :
+       {std::pair{Vec3{0.1, 0.2, 0.15}, -4 * std::numbers::pi}, {Vec3{0.7, 0.9, 0.3}, 0.0}}) {
     Real sum = 0;
     for (const auto& face : faces) {
       PanelValues values;

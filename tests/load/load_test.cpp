@@ -45,25 +45,30 @@ TEST(ContactPatch, PressureDoesNotDependOnTheMesh) {
     Load load;
     load.patches.push_back(make_patch(box.mesh, box.twins, box.bvh, top, a, {0, -1000, 0}));
     const Vec3 t = traction_at(load, top, box.bvh.closest(top).face);
-    EXPECT_NEAR(t.y, -exact, 0.02 * exact);  // panels of a third of the radius: centroid rule errs by about 1 % at the rim
+    EXPECT_NEAR(t.y, -exact,
+                0.02 * exact);  // panels of a third of the radius: centroid rule errs by about 1 % at the rim
   }
 }
 
 TEST(ContactPatch, LeavesTheFarSideOfAThinWallFree) {
   const Prepared plate(make_plate(0.4, 0.4, 0.005, 0.02));
-  const ContactPatch patch = make_patch(plate.mesh, plate.twins, plate.bvh, {0.01, bounding_box(plate.mesh).high.y, 0.02}, 0.05, {0, -1, 0});
+  const ContactPatch patch =
+      make_patch(plate.mesh, plate.twins, plate.bvh, {0.01, bounding_box(plate.mesh).high.y, 0.02}, 0.05, {0, -1, 0});
   ASSERT_GT(patch.faces.size(), 4u);
   for (const std::uint32_t f : patch.faces) EXPECT_GT(plate.mesh.area_normal2(f).y, 0);
 }
 
 TEST(InertiaRelief, BalancesForceAndMomentOfAnyContacts) {
-  for (SurfaceMesh mesh : {make_sphere(0.1, 0.03), make_box({0.3, 0.1, 0.2}, 0.05), make_hollow_sphere(0.1, 0.06, 0.03)}) {
+  for (SurfaceMesh mesh :
+       {make_sphere(0.1, 0.03), make_box({0.3, 0.1, 0.2}, 0.05), make_hollow_sphere(0.1, 0.06, 0.03)}) {
     const Prepared s(std::move(mesh));
     const MassProperties mass = mass_properties(s.mesh, 2400);
-    const std::vector<BodyContact> contacts = {{{0.1, 0.02, 0.03}, {-100, 40, 30}, 1e-3, 0.02}, {{-0.02, -0.1, 0.01}, {5, 900, -80}, 1e-3, 0.01}};
+    const std::vector<BodyContact> contacts = {{{0.1, 0.02, 0.03}, {-100, 40, 30}, 1e-3, 0.02},
+                                               {{-0.02, -0.1, 0.01}, {5, 900, -80}, 1e-3, 0.01}};
     const Vec3 omega{3, -8, 5};
     const Load load = make_load(s.mesh, mass, contacts, s.twins, s.bvh, omega);
-    // Independently of make_load's own bookkeeping: body force by quadrature over the tetrahedra to an inner point (degree 2).
+    // Independently of make_load's own bookkeeping: body force by quadrature over the tetrahedra to an inner point
+    // (degree 2).
     Vec3 force = panel_force(load.panels), moment;
     for (std::size_t i = 0; i < load.panels.size(); ++i) {
       const auto& c = load.panels.corners[i];
@@ -77,7 +82,8 @@ TEST(InertiaRelief, BalancesForceAndMomentOfAnyContacts) {
       for (int k = 0; k < 4; ++k) {
         Vec3 x;
         for (int j = 0; j < 4; ++j) x += v[j] * (j == k ? p : q);
-        const Vec3 b = (load.body_force.constant + load.body_force.linear * (x - load.body_force.origin)) * (volume / 4);
+        const Vec3 b =
+            (load.body_force.constant + load.body_force.linear * (x - load.body_force.origin)) * (volume / 4);
         force += b, moment += cross(x - mass.centre, b);
       }
     }
@@ -101,7 +107,8 @@ TEST(CurvatureRadius, FindsTheRadiusOfASphereAndTheDiagonalOfAFlatFace) {
   const Prepared s(make_sphere(0.1, 0.01));
   EXPECT_NEAR(curvature_radius(s.mesh, s.twins, s.bvh, {0, -0.1, 0}), 0.1, 0.01);
   const Prepared box(make_box({0.4, 0.4, 0.4}, 0.02));
-  EXPECT_DOUBLE_EQ(curvature_radius(box.mesh, box.twins, box.bvh, {0.01, bounding_box(box.mesh).low.y, 0.02}), bounding_box(box.mesh).diagonal());
+  EXPECT_DOUBLE_EQ(curvature_radius(box.mesh, box.twins, box.bvh, {0.01, bounding_box(box.mesh).low.y, 0.02}),
+                   bounding_box(box.mesh).diagonal());
 }
 
 TEST(BodyContact, DurationIsHertzAboveTheFloorAndTheStepAtRest) {
@@ -114,7 +121,8 @@ TEST(BodyContact, DurationIsHertzAboveTheFloorAndTheStepAtRest) {
   c.a = body.id, c.b = kGround, c.impulse = {0, 2, 0}, c.approach_speed = 2;
   ContactLoadOptions options;
   const BodyContact soft = body_contact(body, nullptr, c, 0.1, options);
-  EXPECT_NEAR(soft.duration, hertz_duration(body.mass.mass, 0.1, effective_modulus(1e7, body.material.poisson, 0, 0), 2), 1e-12);
+  EXPECT_NEAR(soft.duration,
+              hertz_duration(body.mass.mass, 0.1, effective_modulus(1e7, body.material.poisson, 0, 0), 2), 1e-12);
   EXPECT_NEAR(norm(soft.force), 2 / soft.duration, 1e-9);
   body.material.young = 70e9;
   EXPECT_DOUBLE_EQ(body_contact(body, nullptr, c, 0.1, options).duration, options.min_duration);

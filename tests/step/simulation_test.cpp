@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 Scene scene_of(const std::string& text) {
   static int count = 0;
-  const fs::path path = fs::temp_directory_path() / ("sherd_simulation_test_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".toml");
+  const fs::path path = fs::temp_directory_path() /
+                        ("sherd_simulation_test_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".toml");
   std::ofstream(path) << text;
   const Scene scene = load_scene(path);
   fs::remove(path);
@@ -96,7 +97,8 @@ TEST(Simulation, FragmentsLoseThicknessTimesAreaOfVolumeAndNoMassOrMomentum) {
     // Flat cracks across a bar: slab volume is thickness times area to the accuracy of area_inside (1 %).
     EXPECT_NEAR(removed - dust, 1e-4 * area, 0.01 * 1e-4 * area + 1e-9 * before);
     EXPECT_NEAR(v["after_remeshing"], before - 1e-4 * area, 0.01 * before);
-    for (const char* key : {"mass", "momentum", "angular_momentum"}) EXPECT_LT(event["conservation"][key].get<Real>(), 1e-9);
+    for (const char* key : {"mass", "momentum", "angular_momentum"})
+      EXPECT_LT(event["conservation"][key].get<Real>(), 1e-9);
   }
   EXPECT_GT(broken, 0);
 }
@@ -119,7 +121,9 @@ TEST(Simulation, SameFramesAndStatisticsForAnyNumberOfThreads) {
   }
 }
 
-TEST(Simulation, FrameCountFollowsDurationAndRate) { EXPECT_EQ(bar_run().frames.size(), 4u); }
+TEST(Simulation, FrameCountFollowsDurationAndRate) {
+  EXPECT_EQ(bar_run().frames.size(), 4u);
+}
 
 TEST(Simulation, ASlowTouchBreaksNothingAndSaysWhy) {
   std::string text = kBar;

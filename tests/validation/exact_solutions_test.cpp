@@ -74,7 +74,8 @@ TEST(ValidationStress, UniformTensionIsExactOnTheSurfaceAndInside) {
 }
 
 TEST(ValidationStress, HangingBarCarriesItsOwnWeight) {
-  // Body force rho g downwards, held by the traction rho g H on top: sigma_yy = rho g (y - bottom), all else 0. Quadratic u.
+  // Body force rho g downwards, held by the traction rho g H on top: sigma_yy = rho g (y - bottom), all else 0.
+  // Quadratic u.
   Case c;
   c.mesh = make_box({1, 2, 1}, 0.25);
   const Box box = bounding_box(c.mesh);
@@ -102,16 +103,17 @@ TEST(ValidationStress, ThickSphereUnderInnerPressureConvergesToLame) {
     const Solved s = solve(c);
     ASSERT_TRUE(s.solution.ok);
     errors.push_back(corner_error(c, s, hoop({a, 0, 0}), hoop));
-    std::printf("Lame: %zu triangles, rms %.2f %%, %d iterations\n", c.mesh.triangle_count(), 100 * errors.back(), s.solution.krylov.iterations);
+    std::printf("Lame: %zu triangles, rms %.2f %%, %d iterations\n", c.mesh.triangle_count(), 100 * errors.back(),
+                s.solution.krylov.iterations);
   }
   EXPECT_LT(errors[1], 0.03);
   EXPECT_GT(std::log(errors[0] / errors[1]) / std::log(2.0), 1.3);  // P1: order about 2 (prototype 1.66 % -> 0.69 %)
 }
 
 TEST(ValidationStress, MeanStressOfASpinningSphereIsItsVirial) {
-  // div sigma + b = 0 without tractions: integral of sigma_ij dV = integral of b_i x_j dV. b = (x, 0, z): 0.2 V (1, 0, 1) for the
-  // unit sphere. Cones from the centre to the faces, three radial Gauss points: exact for fields quadratic along a ray, as the
-  // exact stress is.
+  // div sigma + b = 0 without tractions: integral of sigma_ij dV = integral of b_i x_j dV. b = (x, 0, z): 0.2 V (1, 0,
+  // 1) for the unit sphere. Cones from the centre to the faces, three radial Gauss points: exact for fields quadratic
+  // along a ray, as the exact stress is.
   Case c;
   c.mesh = make_sphere(1, 0.25);
   c.force.linear[0][0] = c.force.linear[2][2] = 1;
@@ -130,7 +132,8 @@ TEST(ValidationStress, MeanStressOfASpinningSphereIsItsVirial) {
     mean += Vec3{sigma[i].xx, sigma[i].yy, sigma[i].zz} * w, total += w;
   }
   mean = mean / total;
-  std::printf("spinning sphere: %zu triangles, mean stress %.4f %.4f %.4f of 0.2 0 0.2\n", c.mesh.triangle_count(), mean.x, mean.y, mean.z);
+  std::printf("spinning sphere: %zu triangles, mean stress %.4f %.4f %.4f of 0.2 0 0.2\n", c.mesh.triangle_count(),
+              mean.x, mean.y, mean.z);
   // Faceting: edge 0.25 has a sagitta of h^2/12 = 0.5 %, the second moment 2 % with it; P1 stress about 2 % more.
   EXPECT_NEAR(mean.x, 0.2, 0.008);
   EXPECT_NEAR(mean.z, 0.2, 0.008);
