@@ -21,6 +21,8 @@ namespace {
 // of thickness T = 2 V/A bears a bending force of order strength * T^2 (plates: 6 M / T^2 with M of order F / 2 pi),
 // and no tension exceeds the mean contact pressure by much away from it.
 constexpr Real kBendingShare = 0.05, kPressureShare = 0.5;
+// The stress a newton has caused on this mesh before, times this, stands for the stress it may cause elsewhere.
+constexpr Real kLearnedShare = 4;
 
 // Meshes' dense operators kept at a time, bytes.
 constexpr std::size_t kOperatorBudget = std::size_t{3} << 30;
@@ -46,7 +48,7 @@ struct Simulation::Impl {
     std::shared_ptr<Solid> solid;
     std::size_t scene_body = 0;
     std::size_t last_solve = 0;  // step, for dropping operators
-    int fragments_named = 0;
+    Real stress_per_force = 0;   // the most that earlier solves of this mesh gave, Pa/N
   };
 
   Scene scene;
@@ -147,6 +149,10 @@ std::string Simulation::Impl::reason_to_skip(std::size_t i, const std::vector<Bo
   if (force < kBendingShare * body.material.strength * wall * wall &&
       pressure < kPressureShare * body.material.strength)
     return "load below strength";
+  const Real needed =
+      companions[i].solid->partial.empty() ? body.material.strength : body.material.propagation_strength;
+  if (companions[i].stress_per_force > 0 && kLearnedShare * companions[i].stress_per_force * force < needed)
+    return "load below what earlier ones bore";
   return {};
 }
 
@@ -190,7 +196,8 @@ void Simulation::Impl::apply_shapes(std::size_t i, FractureResult& result, Event
     const bool clean_kept = shape.clean == companion.solid->shared_mesh();
     auto solid = clean_kept ? companion.solid : std::make_shared<Solid>(shape.clean, companion.solid->root());
     solid->partial = std::move(shape.partial);
-    solids.push_back({std::move(solid), companion.scene_body, 0, 0});
+    solids.push_back(
+        {std::move(solid), companion.scene_body, companion.last_solve, clean_kept ? companion.stress_per_force : 0});
   }
   inherit_motion(parent, fragments);
   const Momenta before = momenta(parent);
@@ -224,6 +231,11 @@ bool Simulation::Impl::fracture(std::size_t i, std::vector<BodyContact>&& loads,
   EventRecord event;
   event.step = steps, event.time = time(), event.body = body.name, event.body_id = body.id.value;
   event.result = fracture_solid(solid, mass, material, loads, omega, fracture_options(i));
+  Real force = 0;
+  for (const BodyContact& c : loads) force += norm(c.force);
+  if (event.result.solved)
+    companions[i].stress_per_force =
+        std::max(companions[i].stress_per_force, event.result.strongest.stress.value / force);
   event.contacts = std::move(loads);
   for (const CrackRecord& c : event.result.cracks) next_crack = std::max(next_crack, c.id + 1);
   next_crack +=
