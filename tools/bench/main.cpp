@@ -10,7 +10,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   CLI::App* micro = app.add_subcommand("micro", "times of single stages; takes Google Benchmark's options");
   micro->allow_extras();
-  micro->footer("Examples:\n  sherd-bench micro\n  sherd-bench micro --benchmark_filter=Operator --benchmark_format=json");
+  micro->footer(
+      "Examples:\n  sherd-bench micro\n  sherd-bench micro --benchmark_filter=Operator --benchmark_format=json");
   CLI11_PARSE(app, argc, argv);
   std::vector<std::string> rest = micro->remaining();
   std::vector<char*> arguments{argv[0]};
