@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <ostream>
 
 #include "engine/mesh/load.h"
 #include "engine/mesh/repair_loop.h"
@@ -232,6 +233,10 @@ struct SharedCase {
   Real max_hole;
   const char* refusal;  // part of the text, or null when the mesh must come out valid
 };
+// Names the case in test lists; the default prints the struct's bytes, which hold addresses.
+void PrintTo(const SharedCase& c, std::ostream* out) {
+  *out << c.file;
+}
 class RepairShared : public ::testing::TestWithParam<SharedCase> {};
 
 TEST_P(RepairShared, ComesOutValidOrIsRefusedClearly) {
