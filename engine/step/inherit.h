@@ -14,6 +14,10 @@ void inherit_motion(const Body& parent, std::vector<Body>& fragments);
 struct Momenta {
   Real mass = 0;
   Vec3 linear, angular;  // kg m/s; about the world origin, kg m^2/s
+  Momenta& operator+=(const Momenta& b) {
+    mass += b.mass, linear += b.linear, angular += b.angular;
+    return *this;
+  }
 };
 Momenta momenta(const Body& body);
 

@@ -202,10 +202,7 @@ void Simulation::Impl::apply_shapes(std::size_t i, FractureResult& result, Event
   inherit_motion(parent, fragments);
   const Momenta before = momenta(parent);
   Momenta after;
-  for (const Body& f : fragments) {
-    const Momenta m = momenta(f);
-    after.mass += m.mass, after.linear += m.linear, after.angular += m.angular;
-  }
+  for (const Body& f : fragments) after += momenta(f);
   // Relative to the sizes of the terms that cancel, so that a body at rest does not divide by zero.
   const Real size = start_box.diagonal(), speed = norm(parent.velocity) + size * norm(parent.angular_velocity) + 1e-12;
   event.mass_error = std::abs(after.mass - before.mass) / before.mass;

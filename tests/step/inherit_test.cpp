@@ -34,8 +34,7 @@ TEST(InheritMotion, ConservesMassMomentumAndAngularMomentumAcrossACut) {
   const Momenta before = momenta(parent);
   Momenta after;
   for (const Body& f : fragments) {
-    const Momenta m = momenta(f);
-    after.mass += m.mass, after.linear += m.linear, after.angular += m.angular;
+    after += momenta(f);
     EXPECT_GT(f.density, parent.density);  // makes up for the slab
   }
   EXPECT_NEAR(after.mass, before.mass, 1e-13 * before.mass);
