@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "engine/rigid/step.h"
 #include "engine/step/build_bodies.h"
@@ -12,6 +13,7 @@
 #include "engine/step/inherit.h"
 #include "engine/step/stats.h"
 #include "engine/step/stopwatch.h"
+#include "kernels/core/error.h"
 #include "kernels/core/parallel.h"
 
 namespace sherd {
@@ -40,6 +42,17 @@ std::size_t operator_bytes(const SurfaceMesh& mesh) {
   return 9 * mesh.vertex_count() * mesh.vertex_count() * sizeof(float);
 }
 
+// Said before the run starts, not at the first impact.
+void require_solvable(const BuiltBody& built) {
+  const std::size_t bytes = operator_bytes(*built.body.mesh), allowed = ElasticOptions{}.max_bytes;
+  if (bytes <= allowed) return;
+  const Real edge = built.edge_length * std::pow(static_cast<Real>(bytes) / static_cast<Real>(allowed), 0.25) * 1.02;
+  throw InputError(fmt::format(
+      "body \"{}\": {} triangles need {} MiB for the stress, more than the {} MiB allowed; raise edge_length "
+      "from {:.3g} to {:.3g} m, or set breakable = false",
+      built.body.name, built.body.mesh->triangle_count(), bytes >> 20, allowed >> 20, built.edge_length, edge));
+}
+
 }  // namespace
 
 struct Simulation::Impl {
@@ -64,6 +77,7 @@ struct Simulation::Impl {
   std::size_t steps = 0, frames_served = 0;
   std::uint32_t next_id = 0;
   std::int32_t next_crack = 0;
+  std::vector<std::string> pending;  // messages nobody has taken yet
   Frame last_frame;
   std::vector<std::size_t> last_frame_roots;  // scene body of each body of last_frame
   Box start_box;
@@ -74,6 +88,7 @@ struct Simulation::Impl {
     const Stopwatch watch(record.prepare_seconds);
     for (std::size_t i = 0; i < s.bodies.size(); ++i) {
       BuiltBody built = build_body(s.bodies[i], BodyId{next_id++});
+      if (built.body.breakable && scene.fracture.enabled) require_solvable(built);
       for (const std::string& m : built.messages) record.messages.push_back(built.body.name + ": " + m);
       companions.push_back(
           {std::make_shared<Solid>(built.body.mesh, RootScale{built.edge_length, built.body.mass.volume,
@@ -83,6 +98,7 @@ struct Simulation::Impl {
     }
     ground = {s.ground.enabled, s.ground.height, s.ground.restitution, s.ground.friction};
     rigid.dt = s.time_step, rigid.gravity = s.gravity;
+    pending = record.messages;
     start_box = world_box();
   }
 
@@ -114,6 +130,7 @@ struct Simulation::Impl {
   std::string reason_to_skip(std::size_t i, const std::vector<BodyContact>& loads) const;
   FractureOptions fracture_options(std::size_t i) const;
   bool fracture(std::size_t i, std::vector<BodyContact>&& loads, StepRecord& step);
+  void report(const EventRecord& event);
   void apply_shapes(std::size_t i, FractureResult& result, EventRecord& event);
   void limit_operators();
   void advance();
@@ -239,12 +256,25 @@ bool Simulation::Impl::fracture(std::size_t i, std::vector<BodyContact>&& loads,
       static_cast<std::int32_t>(event.result.shapes.size());  // ids used for stopped cracks that split a piece
   ++step.solves, step.solver_iterations += static_cast<std::size_t>(event.result.krylov.iterations);
   step.cracks += event.result.cracks.size();
+  report(event);
   const bool changed = event.result.changed;
   if (changed) apply_shapes(i, event.result, event);
   step.fragments += event.new_bodies.size();
   event.result.shapes.clear();
   record.events.push_back(std::move(event));
   return changed;
+}
+
+void Simulation::Impl::report(const EventRecord& event) {
+  const FractureResult& r = event.result;
+  if (!r.solved)
+    pending.push_back(fmt::format("{:.3f} s: {}: no stress under this impact: {}", event.time, event.body, r.reason));
+  else if (r.shapes.size() > 1)
+    pending.push_back(fmt::format("{:.3f} s: {} breaks into {} pieces (tension up to {:.3g} MPa)", event.time,
+                                  event.body, r.shapes.size(), r.strongest.stress.value * 1e-6));
+  else if (r.changed)
+    pending.push_back(fmt::format("{:.3f} s: {} cracks (tension up to {:.3g} MPa)", event.time, event.body,
+                                  r.strongest.stress.value * 1e-6));
 }
 
 // Frees the operators solved longest ago until the rest fits the budget.
@@ -398,18 +428,8 @@ View Simulation::material_view() const {
 std::string Simulation::stats_json() const {
   return to_json(impl_->record);
 }
-std::vector<std::string> Simulation::messages() const {
-  return impl_->record.messages;
-}
-
-std::string Simulation::status() const {
-  std::string text = fmt::format("t = {:.3f} s, {} bodies", impl_->time(), impl_->bodies.size());
-  if (!impl_->record.events.empty()) {
-    const EventRecord& e = impl_->record.events.back();
-    text +=
-        fmt::format(", last event {} at {:.3f} s: {:.3g} MPa", e.body, e.time, e.result.strongest.stress.value * 1e-6);
-  }
-  return text;
+std::vector<std::string> Simulation::take_messages() {
+  return std::exchange(impl_->pending, {});
 }
 
 }  // namespace sherd

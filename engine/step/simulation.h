@@ -33,10 +33,8 @@ class Simulation {
   // What happened, as JSON. Everything under a key "seconds" may differ between runs; all else is the same in every
   // run.
   std::string stats_json() const;
-  // One line for a person: time, bodies, the last event.
-  std::string status() const;
-  // Messages of the preparation (repair, remeshing), one a line, with the body's name.
-  std::vector<std::string> messages() const;
+  // What a person should know and has not taken yet, a line each: repairs of the meshes, then what breaks, what fails.
+  std::vector<std::string> take_messages();
 
  private:
   struct Impl;

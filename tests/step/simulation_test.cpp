@@ -134,6 +134,29 @@ TEST(Simulation, ASlowTouchBreaksNothingAndSaysWhy) {
   EXPECT_FALSE(r.stats["totals"]["skipped"].empty());
 }
 
+TEST(Simulation, ABodyTooLargeForItsOperatorIsRefusedWithTheRemedy) {
+  std::string text = kBar;
+  text.replace(text.find("edge_length = 0.0125"), 20, "edge_length = 0.001");
+  try {
+    Simulation simulation(scene_of(text), {});
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("raise edge_length from 0.001 to"), std::string::npos) << e.what();
+  }
+  Simulation rigid(scene_of(text + "breakable = false\n"), {});  // the remedy that keeps the mesh
+}
+
+TEST(Simulation, SaysWhatBreaksWhenItBreaks) {
+  Simulation simulation(scene_of(kBar), {});
+  std::string said;
+  while (!simulation.done()) {
+    simulation.step();
+    for (const std::string& m : simulation.take_messages()) said += m + "\n";
+  }
+  EXPECT_NE(said.find("bar breaks into 2 pieces"), std::string::npos) << said;
+  EXPECT_TRUE(simulation.take_messages().empty());
+}
+
 TEST(Simulation, UnbreakableAndFixedBodiesStayWhole) {
   std::string text = kBar + "breakable = false\n";
   const RunResult r = run_scene(text, 1);

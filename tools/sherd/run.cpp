@@ -15,6 +15,7 @@ void simulate(Simulation& simulation, RunWriter& writer, std::size_t frame_limit
   const View view = simulation.view();
   std::size_t bodies = 0;
   for (;;) {
+    for (const std::string& message : simulation.take_messages()) progress.note(message);
     if (simulation.frame_due()) {
       const Frame frame = simulation.snapshot();
       bodies = frame.bodies.size();
@@ -43,7 +44,6 @@ int run_command(const RunOptions& options) {
   const Real duration =
       limited ? std::min(scene.duration, static_cast<Real>(options.frames) / scene.frame_rate) : scene.duration;
   Progress progress(duration, options.quiet);
-  for (const std::string& message : simulation.messages()) progress.note(message);
   std::exception_ptr failure;
   try {
     simulate(simulation, writer, frame_limit, writer.draws() && scene.output.material_view.has_value(), progress);
