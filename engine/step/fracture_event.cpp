@@ -228,18 +228,30 @@ void Event::split_by_partials() {
     }
 }
 
+// The cut piece made fit for the next solve, or nothing: near the cut alone first, all of it when slivers remain.
+std::shared_ptr<const SurfaceMesh> remeshed(const SurfaceMesh& piece, Real edge_length) {
+  std::shared_ptr<const SurfaceMesh> best;
+  std::size_t least = 0;
+  for (const bool local : {true, false}) {
+    RemeshOptions o;
+    o.edge_length = edge_length;
+    if (local) o.locked = lock_good_regions(piece, edge_length, 2 * edge_length);
+    SurfaceMesh out;
+    const RemeshReport report = remesh(piece, o, out);
+    if (report.status != RemeshStatus::kOk || !is_valid(report_mesh(out))) continue;
+    if (!best || report.below_1 < least) best = std::make_shared<SurfaceMesh>(std::move(out)), least = report.below_1;
+    if (least == 0) break;
+  }
+  return best;
+}
+
 FragmentShape Event::finished(Piece& piece) {
   FragmentShape shape;
   shape.clean = piece.mesh;
   if (piece.was_cut) {
     const Stopwatch watch(result_.seconds.remesh);
-    SurfaceMesh out;
-    RemeshOptions o;
-    o.edge_length = solid_.root().edge_length;
-    o.locked = lock_good_regions(*piece.mesh, o.edge_length, 2 * o.edge_length);  // far faces stay as they are
-    const RemeshReport report = remesh(*piece.mesh, o, out);
-    if (report.status == RemeshStatus::kOk && is_valid(report_mesh(out)))
-      shape.clean = std::make_shared<SurfaceMesh>(std::move(out));
+    if (auto mesh = remeshed(*piece.mesh, solid_.root().edge_length))
+      shape.clean = std::move(mesh);
     else
       ++result_.remesh_refused;
   }

@@ -25,6 +25,8 @@ namespace {
 constexpr Real kBendingShare = 0.05, kPressureShare = 0.5;
 // The stress a newton has caused on this mesh before, times this, stands for the stress it may cause elsewhere.
 constexpr Real kLearnedShare = 4;
+// A mesh that the solver failed on so often stays whole until something changes it.
+constexpr int kMaxFailedSolves = 2;
 
 // Meshes' dense operators kept at a time, bytes.
 constexpr std::size_t kOperatorBudget = std::size_t{3} << 30;
@@ -61,6 +63,7 @@ struct Simulation::Impl {
     std::shared_ptr<Solid> solid;
     std::size_t scene_body = 0;
     std::size_t last_solve = 0;  // step, for dropping operators
+    int failed_solves = 0;       // on this mesh
     Real stress_per_force = 0;   // the most that earlier solves of this mesh gave, Pa/N
   };
 
@@ -90,10 +93,8 @@ struct Simulation::Impl {
       BuiltBody built = build_body(s.bodies[i], BodyId{next_id++});
       if (built.body.breakable && scene.fracture.enabled) require_solvable(built);
       for (const std::string& m : built.messages) record.messages.push_back(built.body.name + ": " + m);
-      companions.push_back(
-          {std::make_shared<Solid>(built.body.mesh, RootScale{built.edge_length, built.body.mass.volume,
-                                                              bounding_box(*built.body.mesh).diagonal()}),
-           i, 0, 0});
+      const RootScale root{built.edge_length, built.body.mass.volume, bounding_box(*built.body.mesh).diagonal()};
+      companions.push_back({.solid = std::make_shared<Solid>(built.body.mesh, root), .scene_body = i});
       bodies.push_back(std::move(built.body));
     }
     ground = {s.ground.enabled, s.ground.height, s.ground.restitution, s.ground.friction};
@@ -168,6 +169,7 @@ std::string Simulation::Impl::reason_to_skip(std::size_t i, const std::vector<Bo
     return "load below strength";
   const Real needed =
       companions[i].solid->partial.empty() ? body.material.strength : body.material.propagation_strength;
+  if (companions[i].failed_solves >= kMaxFailedSolves) return "its stress could not be solved";
   if (companions[i].stress_per_force > 0 && kLearnedShare * companions[i].stress_per_force * force < needed)
     return "load below what earlier ones bore";
   return {};
@@ -213,8 +215,11 @@ void Simulation::Impl::apply_shapes(std::size_t i, FractureResult& result, Event
     const bool clean_kept = shape.clean == companion.solid->shared_mesh();
     auto solid = clean_kept ? companion.solid : std::make_shared<Solid>(shape.clean, companion.solid->root());
     solid->partial = std::move(shape.partial);
-    solids.push_back(
-        {std::move(solid), companion.scene_body, companion.last_solve, clean_kept ? companion.stress_per_force : 0});
+    solids.push_back({.solid = std::move(solid),
+                      .scene_body = companion.scene_body,
+                      .last_solve = companion.last_solve,
+                      .failed_solves = clean_kept ? companion.failed_solves : 0,
+                      .stress_per_force = clean_kept ? companion.stress_per_force : 0});
   }
   inherit_motion(parent, fragments);
   const Momenta before = momenta(parent);
@@ -247,6 +252,7 @@ bool Simulation::Impl::fracture(std::size_t i, std::vector<BodyContact>&& loads,
   event.result = fracture_solid(solid, mass, material, loads, omega, fracture_options(i));
   Real force = 0;
   for (const BodyContact& c : loads) force += norm(c.force);
+  if (!event.result.solved) ++companions[i].failed_solves;
   if (event.result.solved)
     companions[i].stress_per_force =
         std::max(companions[i].stress_per_force, event.result.strongest.stress.value / force);
