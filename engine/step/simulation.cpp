@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/fragment/pieces.h"
 #include "engine/rigid/step.h"
 #include "engine/step/build_bodies.h"
 #include "engine/step/framing.h"
@@ -45,14 +46,14 @@ std::size_t operator_bytes(const SurfaceMesh& mesh) {
 }
 
 // Said before the run starts, not at the first impact.
-void require_solvable(const BuiltBody& built) {
-  const std::size_t bytes = operator_bytes(*built.body.mesh), allowed = ElasticOptions{}.max_bytes;
+void require_solvable(const Body& body, Real edge_length) {
+  const std::size_t bytes = operator_bytes(*body.mesh), allowed = ElasticOptions{}.max_bytes;
   if (bytes <= allowed) return;
-  const Real edge = built.edge_length * std::pow(static_cast<Real>(bytes) / static_cast<Real>(allowed), 0.25) * 1.02;
+  const Real edge = edge_length * std::pow(static_cast<Real>(bytes) / static_cast<Real>(allowed), 0.25) * 1.02;
   throw InputError(fmt::format(
       "body \"{}\": {} triangles need {} MiB for the stress, more than the {} MiB allowed; raise edge_length "
       "from {:.3g} to {:.3g} m, or set breakable = false",
-      built.body.name, built.body.mesh->triangle_count(), bytes >> 20, allowed >> 20, built.edge_length, edge));
+      body.name, body.mesh->triangle_count(), bytes >> 20, allowed >> 20, edge_length, edge));
 }
 
 }  // namespace
@@ -90,18 +91,18 @@ struct Simulation::Impl {
     record.threads = options.threads;
     const Stopwatch watch(record.prepare_seconds);
     for (std::size_t i = 0; i < s.bodies.size(); ++i) {
-      BuiltBody built = build_body(s.bodies[i], BodyId{next_id++});
-      if (built.body.breakable && scene.fracture.enabled) require_solvable(built);
+      const BuiltBody built = build_body(s.bodies[i], BodyId{0});
       for (const std::string& m : built.messages) record.messages.push_back(built.body.name + ": " + m);
-      const RootScale root{built.edge_length, built.body.mass.volume, bounding_box(*built.body.mesh).diagonal()};
-      companions.push_back({.solid = std::make_shared<Solid>(built.body.mesh, root), .scene_body = i});
-      bodies.push_back(std::move(built.body));
+      add_solids(built, i);
     }
     ground = {s.ground.enabled, s.ground.height, s.ground.restitution, s.ground.friction};
     rigid.dt = s.time_step, rigid.gravity = s.gravity;
     pending = record.messages;
     start_box = world_box();
   }
+
+  // A mesh of several solids becomes as many bodies: nothing holds them together.
+  void add_solids(const BuiltBody& built, std::size_t scene_body);
 
   Real time() const { return static_cast<Real>(steps) * scene.time_step; }
 
@@ -136,6 +137,27 @@ struct Simulation::Impl {
   void limit_operators();
   void advance();
 };
+
+void Simulation::Impl::add_solids(const BuiltBody& built, std::size_t scene_body) {
+  std::vector<Piece> solids = split_pieces(*built.body.mesh);
+  std::vector<Body> parts(solids.size(), built.body);
+  if (parts.size() > 1) {
+    record.messages.push_back(
+        fmt::format("{}: {} separate solids become {} bodies", built.body.name, parts.size(), parts.size()));
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      parts[k].mesh = std::make_shared<SurfaceMesh>(std::move(solids[k].mesh));
+      parts[k].name = fmt::format("{}_{}", built.body.name, k);
+    }
+    inherit_motion(built.body, parts);
+  }
+  for (Body& part : parts) {
+    part.id = part.parent = BodyId{next_id++};
+    if (part.breakable && scene.fracture.enabled) require_solvable(part, built.edge_length);
+    const RootScale root{built.edge_length, part.mass.volume, bounding_box(*part.mesh).diagonal()};
+    companions.push_back({.solid = std::make_shared<Solid>(part.mesh, root), .scene_body = scene_body});
+    bodies.push_back(std::move(part));
+  }
+}
 
 std::vector<BodyContact> Simulation::Impl::loads_on(std::size_t i) {
   std::vector<BodyContact> loads;

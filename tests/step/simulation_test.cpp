@@ -157,6 +157,29 @@ TEST(Simulation, SaysWhatBreaksWhenItBreaks) {
   EXPECT_TRUE(simulation.take_messages().empty());
 }
 
+TEST(Simulation, SeparateSolidsOfOneMeshBecomeBodies) {
+  const fs::path mesh = fs::temp_directory_path() / ("sherd_two_" + std::to_string(getpid()) + ".obj");
+  std::ofstream out(mesh);
+  for (int k = 0; k < 2; ++k)
+    out << "v " << 2 * k << " 0 0\nv " << 2 * k + 1 << " 0 0\nv " << 2 * k << " 1 0\nv " << 2 * k << " 0 1\n";
+  for (int k = 0; k < 2; ++k)
+    for (const char* face : {"f -8 -6 -7\n", "f -8 -7 -5\n", "f -8 -5 -6\n", "f -7 -6 -5\n"}) {
+      std::string text = face;
+      if (k == 1)
+        for (char& c : text)
+          if (c >= '5' && c <= '8') c = static_cast<char>(c - 4);
+      out << text;
+    }
+  out.close();
+  Simulation simulation(scene_of("[[body]]\nname = \"a\"\nmesh = \"" + mesh.string() + "\"\nedge_length = 0.5\n"), {});
+  const Frame frame = simulation.snapshot();
+  ASSERT_EQ(frame.bodies.size(), 2u);
+  EXPECT_EQ(frame.bodies[0].name, "a_0");
+  EXPECT_NEAR(signed_volume(*frame.bodies[0].mesh), 1.0 / 6, 1e-12);
+  EXPECT_EQ(frame.bodies[1].parent, kNone);
+  fs::remove(mesh);
+}
+
 TEST(Simulation, UnbreakableAndFixedBodiesStayWhole) {
   std::string text = kBar + "breakable = false\n";
   const RunResult r = run_scene(text, 1);
