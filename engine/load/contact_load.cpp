@@ -52,7 +52,16 @@ Real curvature_radius(const SurfaceMesh& mesh, const std::vector<std::uint32_t>&
   return std::clamp(curvature > 0 ? 1 / curvature : diagonal, std::min(0.5 * edge, diagonal), diagonal);
 }
 
-BodyContact body_contact(const Body& body, const Body* other, const Contact& contact, Real radius_of_curvature,
+Real shortest_duration(const ContactLoadOptions& options) {
+  return options.duration > 0 ? options.duration : std::min(options.min_duration, options.time_step);
+}
+
+Real smallest_patch(Real diagonal, const ContactLoadOptions& options) {
+  if (options.patch_radius > 0) return options.patch_radius;
+  return std::min(options.min_patch_radius > 0 ? options.min_patch_radius : 0.02 * diagonal, 0.25 * diagonal);
+}
+
+BodyContact body_contact(const Body& body, const Body* other, const Contact& contact, Real radius, Real diagonal,
                          const ContactLoadOptions& options) {
   const Real modulus = other ? effective_modulus(body.material.young, body.material.poisson, other->material.young,
                                                  other->material.poisson)
@@ -69,15 +78,12 @@ BodyContact body_contact(const Body& body, const Body* other, const Contact& con
   if (duration <= 0)
     duration = contact.approach_speed <= resting_speed
                    ? options.time_step
-                   : std::max(hertz_duration(mass, radius_of_curvature, modulus, contact.approach_speed),
-                              options.min_duration);
+                   : std::max(hertz_duration(mass, radius, modulus, contact.approach_speed), options.min_duration);
   c.duration = duration;
   c.force = rotate(conjugate(body.pose.orientation), impulse) / duration;
-  const Real diagonal = bounding_box(*body.mesh).diagonal();
-  const Real least = options.min_patch_radius > 0 ? options.min_patch_radius : 0.02 * diagonal;
-  c.patch_radius = options.patch_radius > 0
-                       ? options.patch_radius
-                       : std::clamp(hertz_radius(norm(c.force), radius_of_curvature, modulus), least, 0.25 * diagonal);
+  c.patch_radius = options.patch_radius > 0 ? options.patch_radius
+                                            : std::clamp(hertz_radius(norm(c.force), radius, modulus),
+                                                         smallest_patch(diagonal, options), 0.25 * diagonal);
   return c;
 }
 

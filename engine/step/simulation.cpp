@@ -123,13 +123,18 @@ struct Simulation::Impl {
     return o;
   }
 
-  const Body* find(BodyId id) const {
+  std::size_t index_of(BodyId id) const {
     const auto it = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.id == id; });
-    return it == bodies.end() ? nullptr : &*it;
+    SHERD_CHECK(it != bodies.end(), "no body {}", id.value);
+    return static_cast<std::size_t>(it - bodies.begin());
   }
 
+  Real curvature_at(BodyId id, const Vec3& world_point);
   std::vector<BodyContact> loads_on(std::size_t i);
-  std::string reason_to_skip(std::size_t i, const std::vector<BodyContact>& loads) const;
+  std::string cannot_break(std::size_t i) const;
+  std::string too_light(std::size_t i, Real force, Real pressure) const;  // N; mean over a contact patch, Pa
+  // Why body i's stress need not be solved in this step; empty with `loads` set when it must.
+  std::string reason_to_skip(std::size_t i, std::vector<BodyContact>& loads);
   FractureOptions fracture_options(std::size_t i) const;
   bool fracture(std::size_t i, std::vector<BodyContact>&& loads, StepRecord& step);
   void report(const EventRecord& event);
@@ -159,42 +164,65 @@ void Simulation::Impl::add_solids(const BuiltBody& built, std::size_t scene_body
   }
 }
 
+Real Simulation::Impl::curvature_at(BodyId id, const Vec3& world_point) {
+  const std::size_t i = index_of(id);
+  Solid& solid = *companions[i].solid;
+  return curvature_radius(solid.mesh(), solid.twins(), solid.bvh(), to_material(bodies[i], world_point));
+}
+
 std::vector<BodyContact> Simulation::Impl::loads_on(std::size_t i) {
   std::vector<BodyContact> loads;
   const Body& body = bodies[i];
   for (const Contact& c : contacts) {
     if ((c.a != body.id && c.b != body.id) || norm2(c.impulse) == 0) continue;
     const BodyId other = c.a == body.id ? c.b : c.a;
-    const Vec3 point = to_material(body, c.point);
-    Solid& solid = *companions[i].solid;
-    const Real radius = curvature_radius(solid.mesh(), solid.twins(), solid.bvh(), point);
-    loads.push_back(body_contact(body, other == kGround ? nullptr : find(other), c, radius, load_options()));
+    Real radius = curvature_at(body.id, c.point);
+    if (other != kGround) radius = 1 / (1 / radius + 1 / curvature_at(other, c.point));
+    loads.push_back(body_contact(body, other == kGround ? nullptr : &bodies[index_of(other)], c, radius,
+                                 companions[i].solid->diagonal(), load_options()));
   }
   return loads;
 }
 
-std::string Simulation::Impl::reason_to_skip(std::size_t i, const std::vector<BodyContact>& loads) const {
+std::string Simulation::Impl::cannot_break(std::size_t i) const {
   const Body& body = bodies[i];
   if (!scene.fracture.enabled) return "fracture is off";
   if (body.fixed || !body.breakable) return "unbreakable";
   if (body.generation >= scene.fracture.max_generation) return "last generation";
   if (bodies.size() >= static_cast<std::size_t>(scene.fracture.max_fragments)) return "fragment limit";
   if (companions[i].solid->mesh().triangle_count() < 20) return "too small";
-  Real force = 0, pressure = 0;
-  for (const BodyContact& c : loads) {
-    force += norm(c.force);
-    pressure = std::max(pressure, norm(c.force) / (std::numbers::pi * c.patch_radius * c.patch_radius));
-  }
-  const Real wall = 2 * body.mass.volume / surface_area(companions[i].solid->mesh());
-  if (force < kBendingShare * body.material.strength * wall * wall &&
-      pressure < kPressureShare * body.material.strength)
-    return "load below strength";
-  const Real needed =
-      companions[i].solid->partial.empty() ? body.material.strength : body.material.propagation_strength;
   if (companions[i].failed_solves >= kMaxFailedSolves) return "its stress could not be solved";
+  return {};
+}
+
+std::string Simulation::Impl::too_light(std::size_t i, Real force, Real pressure) const {
+  const Real strength = bodies[i].material.strength, wall = companions[i].solid->thickness();
+  if (force < kBendingShare * strength * wall * wall && pressure < kPressureShare * strength)
+    return "load below strength";
+  const Real needed = companions[i].solid->partial.empty() ? strength : bodies[i].material.propagation_strength;
   if (companions[i].stress_per_force > 0 && kLearnedShare * companions[i].stress_per_force * force < needed)
     return "load below what earlier ones bore";
   return {};
+}
+
+std::string Simulation::Impl::reason_to_skip(std::size_t i, std::vector<BodyContact>& loads) {
+  // Cheapest questions first: most bodies of a heap only rest.
+  Real impulse = 0, largest = 0;
+  for (const Contact& c : contacts)
+    if (c.a == bodies[i].id || c.b == bodies[i].id)
+      impulse += norm(c.impulse), largest = std::max(largest, norm(c.impulse));
+  if (impulse == 0) return "no contact";
+  if (std::string reason = cannot_break(i); !reason.empty()) return reason;
+  const ContactLoadOptions options = load_options();
+  const auto disc = [](Real radius) { return std::numbers::pi * radius * radius; };
+  const Real shortest = shortest_duration(options),
+             area = disc(smallest_patch(companions[i].solid->diagonal(), options));
+  if (std::string reason = too_light(i, impulse / shortest, largest / shortest / area); !reason.empty()) return reason;
+  loads = loads_on(i);
+  Real force = 0, pressure = 0;
+  for (const BodyContact& c : loads)
+    force += norm(c.force), pressure = std::max(pressure, norm(c.force) / disc(c.patch_radius));
+  return too_light(i, force, pressure);
 }
 
 FractureOptions Simulation::Impl::fracture_options(std::size_t i) const {
@@ -340,20 +368,13 @@ void Simulation::Impl::advance() {
     };
     std::vector<Due> due;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      std::vector<BodyContact> loads = loads_on(i);
-      if (loads.empty()) {
-        ++step.skipped["no contact"];
-        continue;
-      }
+      std::vector<BodyContact> loads;
       if (const std::string reason = reason_to_skip(i, loads); !reason.empty())
         ++step.skipped[reason];
       else
         due.push_back({bodies[i].id, std::move(loads)});
     }
-    for (Due& d : due) {
-      const auto it = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.id == d.id; });
-      fracture(static_cast<std::size_t>(it - bodies.begin()), std::move(d.loads), step);
-    }
+    for (Due& d : due) fracture(index_of(d.id), std::move(d.loads), step);
     limit_operators();
   }
   step.bodies = bodies.size();

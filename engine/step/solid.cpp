@@ -2,6 +2,16 @@
 
 namespace sherd {
 
+Real Solid::diagonal() {
+  if (diagonal_ == 0) diagonal_ = bounding_box(*clean_).diagonal();
+  return diagonal_;
+}
+
+Real Solid::thickness() {
+  if (thickness_ == 0) thickness_ = 2 * signed_volume(*clean_) / surface_area(*clean_);
+  return thickness_;
+}
+
 const std::vector<std::uint32_t>& Solid::twins() {
   if (twins_.empty()) twins_ = build_twins(*clean_);
   return twins_;

@@ -30,6 +30,8 @@ class Solid {
   const RootScale& root() const { return root_; }
   std::vector<CrackSheet> partial;  // cracks that stopped inside
 
+  Real diagonal();   // of the bounding box, m
+  Real thickness();  // 2 volume / area, m: of a plate its thickness, of a ball two thirds of its radius
   const std::vector<std::uint32_t>& twins();
   const TriangleBvh& bvh();
   const SurfaceRecovery& recovery();
@@ -41,6 +43,7 @@ class Solid {
  private:
   std::shared_ptr<const SurfaceMesh> clean_;
   RootScale root_;
+  Real diagonal_ = 0, thickness_ = 0;
   std::vector<std::uint32_t> twins_;
   std::unique_ptr<TriangleBvh> bvh_;
   std::unique_ptr<SurfaceRecovery> recovery_;

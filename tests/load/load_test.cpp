@@ -120,18 +120,18 @@ TEST(BodyContact, DurationIsHertzAboveTheFloorAndTheStepAtRest) {
   Contact c;
   c.a = body.id, c.b = kGround, c.impulse = {0, 2, 0}, c.approach_speed = 2;
   ContactLoadOptions options;
-  const BodyContact soft = body_contact(body, nullptr, c, 0.1, options);
+  const BodyContact soft = body_contact(body, nullptr, c, 0.1, 0.3, options);
   EXPECT_NEAR(soft.duration,
               hertz_duration(body.mass.mass, 0.1, effective_modulus(1e7, body.material.poisson, 0, 0), 2), 1e-12);
   EXPECT_NEAR(norm(soft.force), 2 / soft.duration, 1e-9);
   body.material.young = 70e9;
-  EXPECT_DOUBLE_EQ(body_contact(body, nullptr, c, 0.1, options).duration, options.min_duration);
+  EXPECT_DOUBLE_EQ(body_contact(body, nullptr, c, 0.1, 0.3, options).duration, options.min_duration);
   options.min_duration = 1e-6;
-  EXPECT_LT(body_contact(body, nullptr, c, 0.1, options).duration, 1e-3);
+  EXPECT_LT(body_contact(body, nullptr, c, 0.1, 0.3, options).duration, 1e-3);
   c.approach_speed = 0.005;
-  EXPECT_DOUBLE_EQ(body_contact(body, nullptr, c, 0.1, options).duration, options.time_step);
+  EXPECT_DOUBLE_EQ(body_contact(body, nullptr, c, 0.1, 0.3, options).duration, options.time_step);
   options.duration = 4e-4;
-  EXPECT_DOUBLE_EQ(body_contact(body, nullptr, c, 0.1, options).duration, 4e-4);
+  EXPECT_DOUBLE_EQ(body_contact(body, nullptr, c, 0.1, 0.3, options).duration, 4e-4);
 }
 
 }  // namespace
