@@ -228,17 +228,21 @@ void Event::split_by_partials() {
     }
 }
 
-// The cut piece made fit for the next solve, or nothing: near the cut alone first, all of it when slivers remain.
+// The cut piece made fit for the next solve, or nothing: near the cut alone; all of it when slivers remain; slivers
+// alone when the piece is so small against the edge that remeshing would change its shape.
 std::shared_ptr<const SurfaceMesh> remeshed(const SurfaceMesh& piece, Real edge_length) {
+  constexpr Real kMaxVolumeChange = 0.005;
+  RemeshOptions local, whole, slivers;
+  local.edge_length = whole.edge_length = slivers.edge_length = edge_length;
+  local.locked = lock_good_regions(piece, edge_length, 2 * edge_length);
+  slivers.iterations = 0;
   std::shared_ptr<const SurfaceMesh> best;
   std::size_t least = 0;
-  for (const bool local : {true, false}) {
-    RemeshOptions o;
-    o.edge_length = edge_length;
-    if (local) o.locked = lock_good_regions(piece, edge_length, 2 * edge_length);
+  for (const RemeshOptions* options : {&local, &whole, &slivers}) {
     SurfaceMesh out;
-    const RemeshReport report = remesh(piece, o, out);
-    if (report.status != RemeshStatus::kOk || !is_valid(report_mesh(out))) continue;
+    const RemeshReport report = remesh(piece, *options, out);
+    if (report.status != RemeshStatus::kOk || std::abs(report.volume_change) > kMaxVolumeChange) continue;
+    if (!is_valid(report_mesh(out))) continue;
     if (!best || report.below_1 < least) best = std::make_shared<SurfaceMesh>(std::move(out)), least = report.below_1;
     if (least == 0) break;
   }
