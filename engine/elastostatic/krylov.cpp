@@ -34,6 +34,14 @@ Real residual(const LinearOperator& a, std::span<const Real> b, std::span<const 
   return length(r) / scale;
 }
 
+// |b|; a zero right-hand side has the solution zero.
+Real checked_length(const LinearOperator& a, std::span<const Real> b, std::span<Real> x) {
+  SHERD_CHECK(b.size() == a.size() && x.size() == a.size(), "sizes {} {} {}", a.size(), b.size(), x.size());
+  const Real scale = length(b);
+  if (scale == 0) std::fill(x.begin(), x.end(), 0);
+  return scale;
+}
+
 // The small least-squares problem of GMRES, kept triangular by Givens rotations.
 struct Hessenberg {
   std::vector<Vector> column;
@@ -72,13 +80,9 @@ struct Hessenberg {
 KrylovResult gmres(const LinearOperator& a, const Preconditioner& m, std::span<const Real> b, std::span<Real> x,
                    const KrylovOptions& options) {
   const std::size_t n = a.size();
-  SHERD_CHECK(b.size() == n && x.size() == n, "sizes {} {} {}", n, b.size(), x.size());
   KrylovResult result;
-  const Real scale = length(b);
-  if (scale == 0) {
-    std::fill(x.begin(), x.end(), 0);
-    return result;
-  }
+  const Real scale = checked_length(a, b, x);
+  if (scale == 0) return result;
   Vector r(n), z(n);
   result.residual = residual(a, b, x, r, scale);
   ++result.products;
@@ -132,13 +136,9 @@ KrylovResult gmres(const LinearOperator& a, const Preconditioner& m, std::span<c
 KrylovResult bicgstab(const LinearOperator& a, const Preconditioner& m, std::span<const Real> b, std::span<Real> x,
                       const KrylovOptions& options) {
   const std::size_t n = a.size();
-  SHERD_CHECK(b.size() == n && x.size() == n, "sizes {} {} {}", n, b.size(), x.size());
   KrylovResult result;
-  const Real scale = length(b);
-  if (scale == 0) {
-    std::fill(x.begin(), x.end(), 0);
-    return result;
-  }
+  const Real scale = checked_length(a, b, x);
+  if (scale == 0) return result;
   Vector r(n), shadow(n), p(n, 0), v(n, 0), s(n), t(n), pz(n), sz(n);
   result.residual = residual(a, b, x, r, scale);
   ++result.products;

@@ -26,6 +26,7 @@ PanelFrame make_panel(const Vec3& v0, const Vec3& v1, const Vec3& v2);
 // Which limit to take when the target lies on the triangle itself.
 enum class Side { kAway, kOnSurface, kInterior };  // kInterior: limit from inside the body (against the normal)
 
+// Lengths in metres: A and M in m, Omega without unit, gradients one power of a metre less.
 struct PanelValues {
   Real inverse = 0;      // A = integral of 1/l
   Mat3 dyad;             // M_ij = integral of e_i e_j / l

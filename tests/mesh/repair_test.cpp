@@ -12,21 +12,10 @@
 #include "engine/mesh/validate.h"
 #include "kernels/core/error.h"
 #include "kernels/core/random.h"
+#include "tests/mesh/mesh_edits.h"
 
 namespace sherd {
 namespace {
-
-SurfaceMesh joined(SurfaceMesh a, const SurfaceMesh& b, const Vec3& shift = {}) {
-  const auto offset = static_cast<std::uint32_t>(a.vertex_count());
-  for (std::size_t i = 0; i < b.vertex_count(); ++i) a.vertices.push_back(b.vertices[i] + shift);
-  for (const Triangle& t : b.triangles) a.add_triangle(offset + t[0], offset + t[1], offset + t[2]);
-  return a;
-}
-
-SurfaceMesh flipped(SurfaceMesh mesh) {
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
 
 // Leaves out the triangles whose centroid satisfies `in`.
 template <class F>

@@ -8,21 +8,10 @@
 
 #include "engine/mesh/load.h"
 #include "engine/mesh/shapes.h"
+#include "tests/mesh/mesh_edits.h"
 
 namespace sherd {
 namespace {
-
-SurfaceMesh joined(SurfaceMesh a, const SurfaceMesh& b, const Vec3& shift = {}) {
-  const auto offset = static_cast<std::uint32_t>(a.vertex_count());
-  for (std::size_t i = 0; i < b.vertex_count(); ++i) a.vertices.push_back(b.vertices[i] + shift);
-  for (const Triangle& t : b.triangles) a.add_triangle(offset + t[0], offset + t[1], offset + t[2]);
-  return a;
-}
-
-SurfaceMesh flipped(SurfaceMesh mesh) {
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
 
 void drop_triangle(SurfaceMesh& mesh, std::size_t t) {
   mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(t));
