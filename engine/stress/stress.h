@@ -3,18 +3,18 @@
 #pragma once
 #include "engine/elastostatic/solver.h"
 #include "engine/mesh/bvh.h"
-#include "engine/stress/recovery.h"
+#include "engine/stress/stress_field.h"
 
 namespace sherd {
 
 // Stress of one solution; keeps references to the body, recovery and bvh, which must outlive it.
-class StressState {
+class StressState final : public StressField {
  public:
   StressState(const ElasticBody& body, const SurfaceRecovery& recovery, const TriangleBvh& bvh, const Load& load,
               const ParticularSolution& particular, const ElasticSolution& solution);
 
   // Total stress per surface corner (SurfaceRecovery::corners()), Pa.
-  const std::vector<Sym3>& corner_stress() const { return corner_stress_; }
+  const std::vector<Sym3>& corner_stress() const override { return corner_stress_; }
   // Per vertex: the corner with the largest principal stress.
   std::uint32_t worst_corner(std::uint32_t vertex) const { return worst_corner_[vertex]; }
   // Total displacement per vertex up to a rigid motion, m.
@@ -22,11 +22,11 @@ class StressState {
 
   // Total stress at points of the closed solid: Somigliana's gradient below a quarter of the local edge length, blended
   // linearly into the surface value above. Points outside get the value of the closest surface point. Parallel.
-  void evaluate(const Vec3Column& points, std::vector<Sym3>& out) const;
+  void evaluate(const Vec3Column& points, std::vector<Sym3>& out) const override;
   // Somigliana's gradient alone: any point inside, no blending; outside it gives the particular solution alone.
   Sym3 interior(const Vec3& x) const;
   // Linear interpolation of the corner stresses on a face.
-  Sym3 on_face(std::uint32_t face, const Vec3& x) const;
+  Sym3 on_face(std::uint32_t face, const Vec3& x) const override;
 
  private:
   Sym3 blended(const Vec3& x) const;
