@@ -51,41 +51,52 @@ PairTerms pair_terms(const Boundary& b, std::size_t t, const Vec3& x, bool incid
   return {v.dyad * c.two + Mat3::identity() * (c.one * v.inverse), v.shape_angle * c.angle};
 }
 
+// The three rows of vertex p.
+void fill_direct_rows(const Boundary& b, const KernelConstants& constants, std::size_t p, std::span<Real> row) {
+  const std::size_t size = row.size() / 3;
+  const Vec3 x = b.mesh.vertices[p];
+  const auto add = [&](std::size_t column, const Mat3& block) {
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) row[i * size + 3 * column + j] += block.m[i][j];
+  };
+  Real total = 0;
+  for (std::size_t t = 0; t < b.panels.size(); ++t) {
+    const Triangle& v = b.mesh.triangles[t];
+    const bool incident = v[0] == p || v[1] == p || v[2] == p;
+    const PairTerms terms = pair_terms(b, t, x, incident, constants);
+    const Vec3& n = b.panels[t].normal;
+    for (int a = 0; a < 3; ++a) {
+      const Vec3 g = b.panels[t].shape_gradient(a);
+      // M u = sum_a (g n^T - n g^T) u_a on a flat P1 triangle
+      Mat3 block = outer(terms.kernel * g, n) - outer(terms.kernel * n, g);
+      for (int i = 0; i < 3; ++i) block[i][i] += terms.weight[a];
+      add(v[static_cast<std::size_t>(a)], block);
+      total += terms.weight[a];
+    }
+  }
+  add(p, Mat3::identity() * -total);
+}
+
 }  // namespace
 
 template <class Scalar>
-DenseOperator<Scalar>::DenseOperator(const Boundary& b, Real nu)
-    : size_(3 * b.mesh.vertex_count()), matrix_(size_ * size_) {
-  const KernelConstants constants(nu);
-  parallel_for_chunks(b.mesh.vertex_count(), 8, [&](std::size_t begin, std::size_t end) {
-    std::vector<Real> row(3 * size_);
+DenseOperator<Scalar>::DenseOperator(std::size_t points, const std::function<void(std::size_t, std::span<Real>)>& fill)
+    : size_(3 * points), matrix_(size_ * size_) {
+  parallel_for_chunks(points, 8, [&](std::size_t begin, std::size_t end) {
+    std::vector<Real> rows(3 * size_);
     for (std::size_t p = begin; p < end; ++p) {
-      std::fill(row.begin(), row.end(), 0);
-      const Vec3 x = b.mesh.vertices[p];
-      const auto add = [&](std::size_t column, const Mat3& block) {
-        for (std::size_t i = 0; i < 3; ++i)
-          for (std::size_t j = 0; j < 3; ++j) row[i * size_ + 3 * column + j] += block.m[i][j];
-      };
-      Real total = 0;
-      for (std::size_t t = 0; t < b.panels.size(); ++t) {
-        const Triangle& v = b.mesh.triangles[t];
-        const bool incident = v[0] == p || v[1] == p || v[2] == p;
-        const PairTerms terms = pair_terms(b, t, x, incident, constants);
-        const Vec3& n = b.panels[t].normal;
-        for (int a = 0; a < 3; ++a) {
-          const Vec3 g = b.panels[t].shape_gradient(a);
-          // M u = sum_a (g n^T - n g^T) u_a on a flat P1 triangle
-          Mat3 block = outer(terms.kernel * g, n) - outer(terms.kernel * n, g);
-          for (int i = 0; i < 3; ++i) block[i][i] += terms.weight[a];
-          add(v[static_cast<std::size_t>(a)], block);
-          total += terms.weight[a];
-        }
-      }
-      add(p, Mat3::identity() * -total);
-      for (std::size_t i = 0; i < 3 * size_; ++i) matrix_[3 * p * size_ + i] = static_cast<Scalar>(row[i]);
+      std::fill(rows.begin(), rows.end(), 0);
+      fill(p, rows);
+      for (std::size_t i = 0; i < rows.size(); ++i) matrix_[3 * p * size_ + i] = static_cast<Scalar>(rows[i]);
     }
   });
 }
+
+template <class Scalar>
+DenseOperator<Scalar>::DenseOperator(const Boundary& b, Real nu)
+    : DenseOperator(b.mesh.vertex_count(), [&b, constants = KernelConstants(nu)](std::size_t p, std::span<Real> rows) {
+        fill_direct_rows(b, constants, p, rows);
+      }) {}
 
 template <class Scalar>
 void DenseOperator<Scalar>::apply(std::span<const Real> x, std::span<Real> y) const {

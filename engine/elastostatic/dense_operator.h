@@ -6,6 +6,8 @@
 // exactly, is exact for affine u. Near and far field use the same form: the traction-kernel form agrees only over a
 // closed surface.
 #pragma once
+#include <functional>
+
 #include "engine/elastostatic/boundary.h"
 #include "engine/elastostatic/linear_operator.h"
 
@@ -16,6 +18,9 @@ template <class Scalar>
 class DenseOperator final : public LinearOperator {
  public:
   DenseOperator(const Boundary& boundary, Real nu);
+  // Any other operator on `points` vectors: fill(p, rows) adds the three rows of point p, row major (entry (i, 3 q + j)
+  // at rows[i * 3 points + 3 q + j]), to zeros. Called in parallel, once a point.
+  DenseOperator(std::size_t points, const std::function<void(std::size_t p, std::span<Real> rows)>& fill);
   std::size_t size() const override { return size_; }
   void apply(std::span<const Real> x, std::span<Real> y) const override;
   void apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const override;

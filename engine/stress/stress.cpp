@@ -3,55 +3,12 @@
 #include <algorithm>
 #include <numbers>
 
+#include "engine/stress/layer_gradient.h"
 #include "kernels/core/parallel.h"
 #include "kernels/fundamental/kelvin.h"
-#include "kernels/fundamental/laplace.h"
 #include "kernels/quadrature/gauss.h"
 
 namespace sherd {
-namespace {
-
-// Displacement gradient of a Kelvin layer with constant density on a panel, and A,k of the panel (gradient of int 1/l).
-struct LayerGradient {
-  Mat3 kelvin;
-  Vec3 inverse;
-};
-
-template <std::size_t N>
-LayerGradient gauss(const PanelFrame& f, const Vec3& x, const Vec3& q, const std::array<TrianglePoint, N>& rule,
-                    const Elastic& m) {
-  LayerGradient g;
-  for (const TrianglePoint& p : rule) {
-    const Vec3 r = x - (f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c);
-    const Real w = p.weight * f.area;
-    g.kelvin += kelvin::gradient(r, q * w, m);
-    g.inverse += laplace::single_layer_gradient(r) * (4 * std::numbers::pi * w);
-  }
-  return g;
-}
-
-LayerGradient closed_form(const PanelFrame& f, const Vec3& x, const Vec3& q, const Elastic& m) {
-  PanelGradients p;
-  integrate_panel_gradient(f, x, Side::kAway, p);
-  LayerGradient g;
-  g.inverse = p.inverse;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 column = (q * ((3 - 4 * m.nu) * p.inverse[k]) + p.dyad[k] * q) * m.kelvin();
-    for (int i = 0; i < 3; ++i) g.kelvin[i][k] = column[i];
-  }
-  return g;
-}
-
-LayerGradient layer_gradient(const PanelFrame& f, const Vec3& x, const Vec3& q, const Elastic& m,
-                             const QuadratureOptions& o) {
-  const Real d2 = distance2(x, f.centroid()) / f.longest2;
-  if (d2 > o.gauss7 * o.gauss7) return gauss(f, x, q, kGauss3, m);
-  if (d2 > o.closed_form * o.closed_form) return gauss(f, x, q, kGauss7, m);
-  return closed_form(f, x, q, m);
-}
-
-}  // namespace
-
 StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recovery, const TriangleBvh& bvh,
                          const Load& load, const ParticularSolution& particular, const ElasticSolution& solution)
     : body_(body),
