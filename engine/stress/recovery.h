@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "engine/mesh/surface_mesh.h"
+#include "engine/mesh/surface_fit.h"
 #include "kernels/core/symmetric.h"
 #include "kernels/fundamental/elastic.h"
 
@@ -11,23 +11,20 @@ namespace sherd {
 
 struct RecoveryOptions {
   Real feature_angle = 35;  // degrees; faces that meet at more belong to different smooth groups
-  int degree = 3;           // of the fit: 2 or 3
+  FitOptions fit;
 };
 
-// A corner of the surface: a vertex together with one of the smooth groups of faces around it. Smooth vertices have
-// one.
-struct SurfaceCorner {
-  std::uint32_t vertex = 0;
+// A corner of the surface with its fit: derivative along tangent_x = sum of row_x * value over the patch.
+struct StressCorner : SurfaceCorner {
   Vec3 tangent_x, tangent_y, normal;  // of the fitted surface; normal unit, outward
   std::vector<std::uint32_t> patch;   // vertices of the fit; patch[0] is `vertex`
-  std::vector<Real> row_x, row_y;     // derivative along tangent_x, tangent_y = sum of row * value over the patch
-  std::vector<std::uint32_t> faces;   // incident faces of the group
+  std::vector<Real> row_x, row_y;
 };
 
 class SurfaceRecovery {
  public:
   SurfaceRecovery(const SurfaceMesh& mesh, const RecoveryOptions& options);
-  const std::vector<SurfaceCorner>& corners() const { return corners_; }
+  const std::vector<StressCorner>& corners() const { return corners_; }
   // Index into corners() of corner k of face t.
   std::uint32_t corner_of(std::size_t t, int k) const { return corner_of_[3 * t + static_cast<std::size_t>(k)]; }
   // displacement: total, per vertex, m; traction: total known traction per corner, Pa. Returns the stress per corner,
@@ -35,7 +32,7 @@ class SurfaceRecovery {
   std::vector<Sym3> stress(const Vec3Column& displacement, const Vec3Column& traction, const Elastic& material) const;
 
  private:
-  std::vector<SurfaceCorner> corners_;
+  std::vector<StressCorner> corners_;
   std::vector<std::uint32_t> corner_of_;
 };
 

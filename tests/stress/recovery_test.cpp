@@ -31,7 +31,7 @@ Real recovery_error(const SurfaceMesh& mesh, int degree, const auto& u, const au
   std::vector<Sym3> exact(traction.size());
   Real size = 0, error = 0;
   for (std::size_t c = 0; c < exact.size(); ++c) {
-    const SurfaceCorner& corner = recovery.corners()[c];
+    const StressCorner& corner = recovery.corners()[c];
     exact[c] = kelvin::hooke(gradient(mesh.vertices[corner.vertex]), kMaterial);
     traction.set(c, exact[c] * corner.normal);
     size = std::max(size, std::abs(eigen_symmetric(exact[c]).value[0]));

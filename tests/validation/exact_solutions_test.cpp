@@ -29,7 +29,7 @@ struct Solved {
 Solved solve(const Case& c, const ElasticOptions& options = {}, int degree = 3) {
   Solved s;
   s.bvh = std::make_unique<TriangleBvh>(c.mesh);
-  s.recovery = std::make_unique<SurfaceRecovery>(c.mesh, RecoveryOptions{35, degree});
+  s.recovery = std::make_unique<SurfaceRecovery>(c.mesh, RecoveryOptions{35, {degree, degree}});
   s.body = std::make_unique<ElasticBody>(c.mesh, c.material, options);
   Load load;
   load.body_force = c.force;
