@@ -3,6 +3,7 @@
 
 #include "engine/mesh/load.h"
 #include "engine/mesh/repair.h"
+#include "engine/mesh/thickness_resolution.h"
 #include "engine/mesh/validate.h"
 #include "kernels/core/error.h"
 #include "tools/sherd/commands.h"
@@ -13,7 +14,8 @@ namespace {
 struct CheckResult {
   MeshReport loaded, repaired;
   std::vector<std::string> load_messages, repair_messages;
-  std::string refusal;  // empty when the mesh is or became valid
+  ResolutionReport resolution;  // of the mesh as usable
+  std::string refusal;          // empty when the mesh is or became valid
 };
 
 CheckResult check(const CheckOptions& options) {
@@ -27,6 +29,7 @@ CheckResult check(const CheckOptions& options) {
   try {
     repair_mesh(mesh, {.name = name, .max_hole_diameter = options.max_hole}, result.repair_messages);
     result.repaired = report_mesh(mesh, count);
+    result.resolution = resolution_report(mesh);
   } catch (const InputError& error) {
     result.refusal = error.what();
   }
@@ -49,6 +52,9 @@ void print_text(const std::string& name, const CheckResult& r) {
     std::printf("\nUsable as it is.\n");
   else
     std::printf("\nAfter repair:\n%s\nUsable after repair.\n", to_text(r.repaired).c_str());
+  if (!r.refusal.empty()) return;
+  std::printf("\nWall thickness and resolution:\n%s", to_text(r.resolution).c_str());
+  print_messages("Warnings:", resolution_warnings(r.resolution));
 }
 
 void print_json(const std::string& name, const CheckResult& r) {
@@ -59,10 +65,13 @@ void print_json(const std::string& name, const CheckResult& r) {
   out["loaded"] = nlohmann::ordered_json::parse(to_json(r.loaded));
   out["load_messages"] = r.load_messages;
   out["repair_messages"] = r.repair_messages;
-  if (usable)
+  if (usable) {
     out["repaired"] = nlohmann::ordered_json::parse(to_json(r.repaired));
-  else
+    out["resolution"] = nlohmann::ordered_json::parse(to_json(r.resolution));
+    out["warnings"] = resolution_warnings(r.resolution);
+  } else {
     out["refusal"] = r.refusal;
+  }
   // File names need not be UTF-8; JSON has to be.
   std::printf("%s\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
 }
