@@ -39,12 +39,13 @@ std::string read_file(const std::string& path) {
 
 SurfaceMesh read_any(const std::string& path, std::vector<std::string>& messages) {
   const std::string ending = lower_ending(path);
-  const char* const known[] = {".obj", ".ply", ".stl", ".gltf", ".glb", ".3ds"};
+  const char* const known[] = {".obj", ".off", ".ply", ".stl", ".gltf", ".glb", ".3ds"};
   const std::string content = read_file(path);
   if (std::none_of(std::begin(known), std::end(known), [&](const char* e) { return ending == e; }))
-    throw InputError(
-        fmt::format("{}: unknown ending '{}'; convert it to .obj, .ply, .stl, .gltf, .glb or .3ds", path, ending));
+    throw InputError(fmt::format("{}: unknown ending '{}'; convert it to .obj, .off, .ply, .stl, .gltf, .glb or .3ds",
+                                 path, ending));
   if (ending == ".obj") return read_obj(path, content);
+  if (ending == ".off") return read_off(path, content);
   if (ending == ".ply") return read_ply(path, content);
   if (ending == ".stl") check_stl(path, content);
   if (ending == ".gltf") check_gltf(path, content);
@@ -136,6 +137,7 @@ SurfaceMesh load_mesh(const std::string& path, const LoadOptions& options, LoadL
   SurfaceMesh mesh = read_any(path, log.messages);
   if (mesh.triangles.empty())
     throw InputError(fmt::format("{}: the file has no triangles; export a triangle mesh", path));
+  log.file_triangles = mesh.triangle_count();
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) mesh.faces.source[t] = static_cast<std::int32_t>(t);
   place(path, mesh, options);
   weld(mesh, log.messages);

@@ -17,16 +17,17 @@ struct LoadOptions {
 
 struct LoadLog {
   std::vector<std::string> messages;  // one sentence for everything changed or left out, with counts
+  std::size_t file_triangles = 0;     // in the file, after triangulation: faces.source counts these
 };
 
-// Reads .obj and .ply (in double precision) and .stl, .gltf, .glb, .3ds (in single precision, node transforms applied).
-// All meshes of a file become one; polygons are triangulated; points and lines are left out. A mesh with borders gets
-// vertices of equal coordinates joined, and border vertices closer than 1e-7 of the bounding box's diagonal joined
-// where that closes borders. Triangles with a repeated vertex and copies of a triangle are dropped. Triangles without
-// area between three vertices stay: dropping them would tear the surface (repair_mesh removes them). faces.source is
-// the number of the file's triangle, counted after triangulation. InputError (file, place, remedy): missing, a folder,
-// empty, unreadable, unknown ending, not what the ending says, truncated, an index out of range, a coordinate that is
-// no finite number, no triangles.
+// Reads .obj, .off and .ply (in double precision) and .stl, .gltf, .glb, .3ds (in single precision, node transforms
+// applied). All meshes of a file become one; polygons are triangulated; points and lines are left out. A mesh with
+// borders gets vertices of equal coordinates joined, and border vertices closer than 1e-7 of the bounding box's
+// diagonal joined where that closes borders. Triangles with a repeated vertex and copies of a triangle are dropped.
+// Triangles without area between three vertices stay: dropping them would tear the surface (repair_mesh removes them).
+// faces.source is the number of the file's triangle, counted after triangulation. InputError (file, place, remedy):
+// missing, a folder, empty, unreadable, unknown ending, not what the ending says, truncated, an index out of range, a
+// coordinate that is no finite number, no triangles.
 SurfaceMesh load_mesh(const std::string& path, const LoadOptions& options, LoadLog& log);
 
 }  // namespace sherd

@@ -11,6 +11,7 @@ namespace sherd {
 // Vertices and triangles as the file lists them (after triangulation); indices are in range.
 SurfaceMesh read_ply(const std::string& path, const std::string& content);
 SurfaceMesh read_obj(const std::string& path, const std::string& content);
+SurfaceMesh read_off(const std::string& path, const std::string& content);
 SurfaceMesh read_assimp(const std::string& path, std::vector<std::string>& messages);
 
 // Throw InputError for files whose stated sizes do not fit their bytes.

@@ -1,6 +1,7 @@
 // The subcommands of `sherd`. Each returns the exit code; InputError means 2, any other exception 1.
 #pragma once
 #include <filesystem>
+#include <string>
 
 #include "kernels/core/vec3.h"
 
@@ -25,6 +26,24 @@ struct RunOptions {
   bool quiet = false;
 };
 int run_command(const RunOptions& options);
+
+struct StressOptions {
+  std::filesystem::path mesh;
+  std::filesystem::path tractions;  // CSV: face,tx,ty,tz (Pa); faces left out carry none
+  std::filesystem::path points;     // CSV: x,y,z and optionally face (-1 inside) and id
+  std::filesystem::path out;        // CSV: id,max_principal,sxx,syy,szz,sxy,syz,szx (Pa)
+  std::filesystem::path json;       // statistics; empty: none
+  Real young = 0, poisson = 0;      // Pa, 1
+  std::string body_force;           // "bx,by,bz[,wx,wy,wz]", N/m^3; empty: none
+  std::string formulation = "direct";
+  int refine = 0;
+  Real feature_angle = 35;  // degrees
+  Real tolerance = 1e-4;
+  int threads = 0;  // 0: all processors
+};
+// Stress at points of the solids that a mesh bounds (engine/stress/analysis.h). 1 when the solver fails; the statistics
+// then say why, and the table is not written.
+int stress_command(const StressOptions& options);
 
 // SIGINT and SIGTERM only set a flag from here on; a second one ends the program at once.
 void catch_interrupts();

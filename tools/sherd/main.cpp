@@ -13,6 +13,7 @@ constexpr const char* kExamples = R"(Examples:
   sherd run scenes/plate_and_goblet.toml --threads 1 --frames 30
   sherd check bunny.obj
   sherd check --json --max-hole 0.02 scan.ply
+  sherd stress bar.ply --traction t.csv --young 7e10 --poisson 0.2 --points p.csv --out stress.csv --json stats.json
 
 Exit codes: 0 success, 2 bad input (scene, mesh, option), 1 failure, 130 ended by Ctrl-C with everything so far on disk.
 Scene files are described in scenes/README.md.)";
@@ -20,6 +21,7 @@ Scene files are described in scenes/README.md.)";
 struct Choice {
   RunOptions run;
   CheckOptions check;
+  StressOptions stress;
   bool no_render = false;
 };
 
@@ -44,6 +46,30 @@ void add_check(CLI::App& app, Choice& choice) {
       ->check(CLI::NonNegativeNumber);
 }
 
+void add_stress(CLI::App& app, StressOptions& o) {
+  CLI::App* stress = app.add_subcommand("stress", "Stress in the solids a mesh bounds, under tractions and body force");
+  stress->add_option("MESH", o.mesh, "Closed mesh (PLY, OBJ, OFF, STL); faces count from 0 in file order")->required();
+  stress->add_option("--traction", o.tractions, "CSV face,tx,ty,tz: traction on each face, Pa; faces left out are free")
+      ->required();
+  stress->add_option("--young", o.young, "Young's modulus, Pa")->required();
+  stress->add_option("--poisson", o.poisson, "Poisson's ratio, above -1 and below 0.5")->required();
+  stress->add_option("--body-force", o.body_force, "bx,by,bz[,wx,wy,wz]: body force b + w cross x, N/m^3");
+  stress->add_option("--points", o.points, "CSV x,y,z[,face][,id]: where; face is the one a point lies on, -1 inside")
+      ->required();
+  stress->add_option("--out", o.out, "CSV id,max_principal,sxx,syy,szz,sxy,syz,szx, Pa, tension positive")->required();
+  stress->add_option("--formulation", o.formulation, "direct, or indirect (the paper's, for comparison)")
+      ->check(CLI::IsMember({"direct", "indirect"}))
+      ->capture_default_str();
+  stress->add_option("--refine", o.refine, "Split every triangle into 4^L of the same plane")->capture_default_str();
+  stress->add_option("--feature-angle", o.feature_angle, "Edges that turn more, in degrees, are creases; 0: all are")
+      ->capture_default_str();
+  stress->add_option("--tolerance", o.tolerance, "Relative, of the stress; the solver works to a hundredth of it")
+      ->capture_default_str();
+  stress->add_option("--threads", o.threads, "Threads (default: all processors); results do not depend on it")
+      ->check(CLI::Range(1, 1024));
+  stress->add_option("--json", o.json, "Statistics as JSON: unknowns, iterations, residuals, times, warnings");
+}
+
 int run(int argc, char** argv) {
   CLI::App app("sherd: brittle fracture of rigid bodies on their surface meshes", "sherd");
   app.set_version_flag("--version", "sherd " SHERD_VERSION);
@@ -52,12 +78,14 @@ int run(int argc, char** argv) {
   Choice choice;
   add_run(app, choice);
   add_check(app, choice);
+  add_stress(app, choice.stress);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kSuccess : kBadInput;
   }
   choice.run.render = !choice.no_render;
+  if (app.got_subcommand("stress")) return stress_command(choice.stress);
   return app.got_subcommand("check") ? check_command(choice.check) : run_command(choice.run);
 }
 
