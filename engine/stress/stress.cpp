@@ -1,9 +1,9 @@
 #include "engine/stress/stress.h"
 
-#include <algorithm>
 #include <numbers>
 
 #include "engine/stress/layer_gradient.h"
+#include "engine/stress/near_surface.h"
 #include "kernels/core/parallel.h"
 #include "kernels/fundamental/kelvin.h"
 #include "kernels/quadrature/gauss.h"
@@ -41,7 +41,7 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
   for (std::size_t c = 0; c < traction.size(); ++c) {
     const SurfaceCorner& corner = recovery.corners()[c];
     Vec3 sum;
-    for (const std::uint32_t f : corner.faces) sum += traction_at(load, b.mesh.vertices[corner.vertex], f);
+    for (const std::uint32_t f : corner.faces) sum += traction_at(load, b.mesh, b.mesh.vertices[corner.vertex], f);
     traction.set(c, sum / static_cast<Real>(corner.faces.size()));
   }
   corner_stress_ = recovery.stress(displacement_, traction, body.material());
@@ -72,36 +72,14 @@ Sym3 StressState::interior(const Vec3& x) const {
 }
 
 Sym3 StressState::on_face(std::uint32_t face, const Vec3& x) const {
-  const PanelFrame& f = body_.boundary().panels[face];
-  Sym3 s;
-  Real total = 0;
-  for (int a = 0; a < 3; ++a) {
-    const Real w = std::clamp(1.0 + dot(f.shape_gradient(a), x - f.vertex[a]), 0.0, 1.0);
-    s += corner_stress_[recovery_.corner_of(face, a)] * w;
-    total += w;
-  }
-  return s * (1 / total);
-}
-
-Sym3 StressState::blended(const Vec3& x) const {
-  const TriangleBvh::Closest c = bvh_.closest(x);
-  const PanelFrame& f = body_.boundary().panels[c.face];
-  const Real reach = 0.25 * std::sqrt(f.area * 4 / std::numbers::sqrt3), depth = std::sqrt(c.distance2);
-  const bool inside = bvh_.inside(x);
-  if (inside && depth >= reach) return interior(x);
-  const Sym3 surface = on_face(c.face, c.point);
-  if (!inside) return surface;
-  const Vec3 inward = depth > 1e-3 * reach ? (x - c.point) / depth : -f.normal;
-  const Vec3 below = c.point + inward * reach;
-  // In a wall thinner than the reach the point below may leave it: the surface value is all there is.
-  if (!bvh_.inside(below)) return surface;
-  const Real w = depth / reach;
-  return surface * (1 - w) + interior(below) * w;
+  return interpolate_corners(body_.boundary().panels[face], recovery_, corner_stress_, face, x);
 }
 
 void StressState::evaluate(const Vec3Column& points, std::vector<Sym3>& out) const {
   out.resize(points.size());
-  parallel_for(points.size(), 1, [&](std::size_t i) { out[i] = blended(points[i]); });
+  parallel_for(points.size(), 1, [&](std::size_t i) {
+    out[i] = blend_near_surface(*this, bvh_, body_.boundary(), points[i], [&](const Vec3& x) { return interior(x); });
+  });
 }
 
 }  // namespace sherd

@@ -29,8 +29,6 @@ class StressState final : public StressField {
   Sym3 on_face(std::uint32_t face, const Vec3& x) const override;
 
  private:
-  Sym3 blended(const Vec3& x) const;
-
   const ElasticBody& body_;
   const SurfaceRecovery& recovery_;
   const TriangleBvh& bvh_;

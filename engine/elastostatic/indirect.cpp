@@ -1,0 +1,180 @@
+#include "engine/elastostatic/indirect.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "engine/elastostatic/dense_operator.h"
+#include "kernels/core/parallel.h"
+#include "kernels/quadrature/gauss.h"
+
+namespace sherd {
+namespace {
+
+// Traction at x on the plane with normal n of a unit density on a panel: block[i][j] = integral of T_ij,
+// T_ij = 2 mu c / l^2 { (1 - 2 nu) (n_i e_j - n_j e_i - d_ij e.n) - 3 e_i e_j e.n }, e = (x - y)/l. Independent of mu.
+struct TractionKernel {
+  Real nu, scale;
+  explicit TractionKernel(Real poisson) : nu(poisson), scale(1 / (16 * std::numbers::pi * (1 - poisson))) {}
+
+  template <std::size_t N>
+  Mat3 gauss(const PanelFrame& f, const Vec3& x, const Vec3& n, const std::array<TrianglePoint, N>& rule) const {
+    Mat3 block;
+    for (const TrianglePoint& p : rule) {
+      const Vec3 r = x - (f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c);
+      const Real inverse2 = 1 / norm2(r), inverse = std::sqrt(inverse2);
+      const Vec3 e = r * inverse;
+      const Real w = 2 * scale * p.weight * f.area * inverse2, a = (1 - 2 * nu) * w, en = dot(e, n), b = 3 * en * w;
+      for (int i = 0; i < 3; ++i) {
+        block[i][i] -= a * en;
+        for (int j = 0; j < 3; ++j) block[i][j] += a * (n[i] * e[j] - n[j] * e[i]) - b * e[i] * e[j];
+      }
+    }
+    return block;
+  }
+  // From the gradient G_ijk = c [(3 - 4 nu) d_ij A,k + M_ij,k] by Hooke's law; its divergence is 2 (1 - 2 nu) c A,j, so
+  // that lambda times it stays finite for nu -> 1/2.
+  Mat3 closed_form(const PanelFrame& f, const Vec3& x, const Vec3& n, Side side) const {
+    PanelGradients g;
+    integrate_panel_gradient(f, x, side, g);
+    const Real k = 3 - 4 * nu, normal = dot(g.inverse, n);
+    Mat3 block;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        Real s = 4 * nu * n[i] * g.inverse[j] + k * n[j] * g.inverse[i] + (i == j ? k * normal : 0);
+        for (int m = 0; m < 3; ++m) s += n[m] * (g.dyad[m][i][j] + g.dyad[i][m][j]);
+        block[i][j] = scale * s;
+      }
+    return block;
+  }
+};
+
+// The three rows of triangle p.
+void fill_rows(const Boundary& b, const TractionKernel& kernel, std::size_t p, std::span<Real> row) {
+  const std::size_t size = row.size() / 3;
+  const Vec3 x = b.centroid[p], n = b.panels[p].normal;
+  for (std::size_t t = 0; t < b.panels.size(); ++t) {
+    const PanelFrame& f = b.panels[t];
+    const Real d2 = distance2(x, b.centroid[t]);
+    Mat3 block;
+    if (t == p)
+      block = kernel.closed_form(f, x, n, Side::kOnSurface) + Mat3::identity() * 0.5;
+    else if (d2 > b.middle2[t])
+      block = kernel.gauss(f, x, n, kGauss3);
+    else if (d2 > b.near2[t])
+      block = kernel.gauss(f, x, n, kGauss7);
+    else
+      block = kernel.closed_form(f, x, n, Side::kAway);
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) row[i * size + 3 * t + j] = block.m[i][j];
+  }
+}
+
+// Means over the faces of the traction the layer has to carry, Pa; interleaved. Means, not centroid values, so that the
+// net force is the load's. The three-point rule is exact for the stress of a force linear in x.
+std::vector<Real> face_tractions(const Boundary& b, const Load& load, const BodyForceField& field) {
+  std::vector<Vec3> t(b.panels.size());
+  parallel_for(t.size(), 16, [&](std::size_t i) {
+    if (!load.face_traction.empty()) t[i] = load.face_traction[i];
+    if (!load.quadratic_traction.empty())  // only the midpoints' shape functions have a mean, a third each
+      for (std::size_t k = 3; k < 6; ++k) t[i] += load.quadratic_traction[6 * i + k] / 3;
+    if (field.zero()) return;
+    const PanelFrame& f = b.panels[i];
+    for (const TrianglePoint& p : kGauss3)
+      t[i] -= field.stress(f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c) * f.normal * p.weight;
+  });
+  for (std::size_t i = 0; i < load.panels.size(); ++i) {
+    const auto& c = load.panels.corners[i];
+    const std::uint32_t face = load.panels.face[i];
+    t[face] += load.panels.traction[i] * (0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) / b.panels[face].area);
+  }
+  std::vector<Real> out;
+  for (const Vec3& v : t) out.insert(out.end(), {v.x, v.y, v.z});
+  return out;
+}
+
+std::vector<Real> areas(const Boundary& b) {
+  std::vector<Real> a;
+  for (const PanelFrame& f : b.panels) a.push_back(f.area);
+  return a;
+}
+
+}  // namespace
+
+IndirectBody::IndirectBody(const SurfaceMesh& mesh, const Elastic& material, const IndirectOptions& options)
+    : material_(material),
+      options_(options),
+      boundary_(mesh, options.quadrature),
+      modes_(boundary_.centroid, areas(boundary_)) {
+  const std::size_t n = 3 * mesh.triangle_count(),
+                    bytes = n * n * (options.double_storage ? sizeof(double) : sizeof(float));
+  if (bytes > options.max_bytes) {
+    reason_ =
+        fmt::format("{} triangles need a dense operator of {} MiB, more than the {} MiB allowed: raise edge_length",
+                    mesh.triangle_count(), bytes >> 20, options.max_bytes >> 20);
+    return;
+  }
+  if (options.double_storage)
+    build<double>();
+  else
+    build<float>();
+}
+
+template <class Scalar>
+void IndirectBody::build() {
+  const TractionKernel kernel(material_.nu);
+  auto dense = std::make_unique<DenseOperator<Scalar>>(
+      boundary_.panels.size(), [&](std::size_t p, std::span<Real> rows) { fill_rows(boundary_, kernel, p, rows); });
+  inverse_blocks_.resize(boundary_.panels.size());
+  for (std::size_t p = 0; p < inverse_blocks_.size(); ++p) {
+    const Mat3 block = dense->diagonal_block(p);
+    const Real d = determinant(block), scale = trace(transpose(block) * block);
+    inverse_blocks_[p] = std::abs(d) > 1e-6 * scale * std::sqrt(scale) ? inverse(block) : Mat3::identity();
+  }
+  operator_ = std::move(dense);
+  completed_ = std::make_unique<CompletedOperator>(*operator_, modes_);
+}
+
+BodyForceField IndirectBody::body_force_field(const Load& load, const ParticularSolution& particular) const {
+  return BodyForceField(boundary_, load.body_force, particular, options_.body_force, material_);
+}
+
+IndirectSolution IndirectBody::solve(const Load& load, const ParticularSolution& particular) const {
+  IndirectSolution s;
+  if (!ready()) {
+    s.reason = reason_;
+    return s;
+  }
+  const std::size_t n = boundary_.panels.size();
+  const std::vector<Real> b = face_tractions(boundary_, load, body_force_field(load, particular));
+  std::vector<Real> x(b.size(), 0);
+  Real mean2 = 0, rigid2 = 0;
+  for (std::size_t i = 0; i < b.size(); ++i) mean2 += boundary_.panels[i / 3].area / boundary_.area * b[i] * b[i];
+  if (!std::isfinite(mean2)) {
+    s.reason = "the load is not finite";
+    return s;
+  }
+  for (const Real c : modes_.coefficients(b)) rigid2 += c * c;
+  s.incompatibility = mean2 > 0 ? std::sqrt(rigid2 / mean2) : 0;
+  const auto jacobi = [&](std::span<const Real> r, std::span<Real> z) {
+    for (std::size_t p = 0; p < n; ++p) {
+      const Vec3 v = inverse_blocks_[p] * Vec3{r[3 * p], r[3 * p + 1], r[3 * p + 2]};
+      z[3 * p] = v.x, z[3 * p + 1] = v.y, z[3 * p + 2] = v.z;
+    }
+  };
+  s.krylov = options_.method == KrylovMethod::kGmres ? gmres(*completed_, jacobi, b, x, options_.krylov)
+                                                     : bicgstab(*completed_, jacobi, b, x, options_.krylov);
+  s.density.resize(n);
+  bool finite = true;
+  for (std::size_t i = 0; i < n; ++i) {
+    s.density.set(i, {x[3 * i], x[3 * i + 1], x[3 * i + 2]});
+    finite = finite && is_finite(s.density[i]);
+  }
+  s.ok = finite && s.krylov.status == KrylovStatus::kConverged;
+  if (!s.ok)
+    s.reason = fmt::format("the solver stopped after {} iterations at a relative residual of {:.2e} (asked for {:.1e})",
+                           s.krylov.iterations, s.krylov.residual, options_.krylov.tolerance);
+  return s;
+}
+
+}  // namespace sherd

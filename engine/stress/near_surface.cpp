@@ -1,0 +1,37 @@
+#include "engine/stress/near_surface.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace sherd {
+
+Sym3 interpolate_corners(const PanelFrame& f, const SurfaceRecovery& recovery, const std::vector<Sym3>& corner_stress,
+                         std::uint32_t face, const Vec3& x) {
+  Sym3 s;
+  Real total = 0;
+  for (int a = 0; a < 3; ++a) {
+    const Real w = std::clamp(1.0 + dot(f.shape_gradient(a), x - f.vertex[a]), 0.0, 1.0);
+    s += corner_stress[recovery.corner_of(face, a)] * w;
+    total += w;
+  }
+  return s * (1 / total);
+}
+
+Sym3 blend_near_surface(const StressField& field, const TriangleBvh& bvh, const Boundary& boundary, const Vec3& x,
+                        const std::function<Sym3(const Vec3&)>& interior) {
+  const TriangleBvh::Closest c = bvh.closest(x);
+  const PanelFrame& f = boundary.panels[c.face];
+  const Real reach = 0.25 * std::sqrt(f.area * 4 / std::numbers::sqrt3), depth = std::sqrt(c.distance2);
+  const bool inside = bvh.inside(x);
+  if (inside && depth >= reach) return interior(x);
+  const Sym3 surface = field.on_face(c.face, c.point);
+  if (!inside) return surface;
+  const Vec3 inward = depth > 1e-3 * reach ? (x - c.point) / depth : -f.normal;
+  const Vec3 below = c.point + inward * reach;
+  // In a wall thinner than the reach the point below may leave it: the surface value is all there is.
+  if (!bvh.inside(below)) return surface;
+  const Real w = depth / reach;
+  return surface * (1 - w) + interior(below) * w;
+}
+
+}  // namespace sherd
