@@ -1,9 +1,92 @@
-// sherd-bench: speed, never correctness (the tests have that). Subcommands so that each study keeps its own options.
+// sherd-bench: speed and accuracy, never correctness (the tests have that). Subcommands so that each study keeps its
+// own options.
 #include <benchmark/benchmark.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <map>
 #include <string>
 #include <vector>
+
+#include "kernels/core/error.h"
+#include "kernels/core/parallel.h"
+#include "tools/bench/stress.h"
+
+namespace {
+
+struct StressCommand {
+  sherd::bench::StressOptions options;
+  std::string formulation = "both";
+  int threads = 0, degree = 0;
+  double gigabytes = 6;
+};
+
+CLI::App* add_stress(CLI::App& app, StressCommand& c) {
+  using sherd::bench::Study;
+  CLI::App* stress = app.add_subcommand("stress", "error of the stress against exact solutions, and its cost");
+  static const std::map<std::string, Study> studies{{"table", Study::kTable},
+                                                    {"interior", Study::kInterior},
+                                                    {"iterations", Study::kIterations},
+                                                    {"vessels", Study::kVessels}};
+  stress->add_option(
+      "--case", c.options.cases, "exact cases (default all): " + [] {
+        std::string names;
+        for (const auto& f : sherd::exact::case_families())
+          names += std::string(names.empty() ? "" : ", ") + std::string(f.name);
+        return names;
+      }());
+  stress
+      ->add_option("--study", c.options.studies,
+                   "table, interior, iterations, vessels (default all; table with --case)")
+      ->transform(CLI::CheckedTransformer(studies));
+  stress->add_option("--formulation", c.formulation)
+      ->check(CLI::IsMember({"direct", "indirect", "both"}))
+      ->capture_default_str();
+  stress->add_option("--tolerance", c.options.solve.elastic.krylov.tolerance, "of the linear solver")
+      ->capture_default_str();
+  stress->add_option("--degree", c.degree, "of the stress recovery, 1 to 4; 0: the library's choice")
+      ->check(CLI::Range(0, 4));
+  stress
+      ->add_option("--vessel-factor", c.options.vessel_factor,
+                   "edges of the vessels' reference are this many times shorter")
+      ->check(CLI::Range(2, 8))
+      ->capture_default_str();
+  stress->add_option("--gigabytes", c.gigabytes, "largest dense operator")->capture_default_str();
+  stress->add_option("--json", c.options.json, "file for the numbers");
+  stress->add_option("--plots", c.options.plots, "folder for one SVG a case: run time against error");
+  stress->add_option("--threads", c.threads, "0: all")->check(CLI::NonNegativeNumber);
+  stress->footer("Examples:\n  sherd-bench stress\n  sherd-bench stress --case cavity --json out.json --plots .");
+  return stress;
+}
+
+int run_stress(StressCommand& c) {
+  sherd::bench::StressOptions& o = c.options;
+  const sherd::ThreadLimit limit(c.threads);
+  o.direct = c.formulation != "indirect", o.indirect = c.formulation != "direct";
+  o.solve.elastic.max_bytes = static_cast<std::size_t>(c.gigabytes * (1 << 30));
+  if (c.degree > 0) o.solve.recovery.fit = {c.degree, c.degree};
+  if (!o.cases.empty() && o.studies.empty()) o.studies = {sherd::bench::Study::kTable};
+  try {
+    return sherd::bench::run_stress(o);
+  } catch (const sherd::InputError& e) {
+    std::fprintf(stderr, "sherd-bench: %s\n", e.what());
+    return 2;
+  }
+}
+
+int run_micro(const std::string& program, std::vector<std::string> rest) {
+  std::string name = program;
+  std::vector<char*> arguments{name.data()};
+  for (std::string& a : rest) arguments.push_back(a.data());
+  int count = static_cast<int>(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"sherd-bench: benchmarks of sherd"};
@@ -12,14 +95,8 @@ int main(int argc, char** argv) {
   micro->allow_extras();
   micro->footer(
       "Examples:\n  sherd-bench micro\n  sherd-bench micro --benchmark_filter=Operator --benchmark_format=json");
+  StressCommand command;
+  CLI::App* stress = add_stress(app, command);
   CLI11_PARSE(app, argc, argv);
-  std::vector<std::string> rest = micro->remaining();
-  std::vector<char*> arguments{argv[0]};
-  for (std::string& a : rest) arguments.push_back(a.data());
-  int count = static_cast<int>(arguments.size());
-  benchmark::Initialize(&count, arguments.data());
-  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return *stress ? run_stress(command) : run_micro(argv[0], micro->remaining());
 }
