@@ -1,13 +1,11 @@
 #include "kernels/quadrature/triangle.h"
 
 #include <algorithm>
-#include <numbers>
+
+#include "kernels/quadrature/panel_terms.h"
 
 namespace sherd {
 namespace {
-
-// Clamp of squared lengths, relative to the longest edge: keeps logarithms and quotients finite at edges and vertices.
-constexpr Real kClamp = 1e-28;
 
 // Line integrals over one edge; hv is the vector from the foot on the edge's line to the target.
 struct EdgeTerms {
@@ -19,37 +17,15 @@ struct EdgeTerms {
 
 EdgeTerms edge_terms(const PanelFrame& f, int e, const Vec3& x, Real d) {
   const Vec3 a = f.vertex[e] - x, b = f.vertex[(e + 1) % 3] - x;
-  const Real clamp = kClamp * f.longest2;
+  const Real clamp = kPanelClamp * f.longest2;
   EdgeTerms t;
   t.sa = dot(a, f.tangent[e]), t.sb = dot(b, f.tangent[e]);
   t.ra = std::sqrt(std::max(norm2(a), clamp)), t.rb = std::sqrt(std::max(norm2(b), clamp));
   t.p = 0.5 * (dot(a, f.outward[e]) + dot(b, f.outward[e]));
   t.h2 = std::max(t.p * t.p + d * d, clamp);
   t.hv = f.normal * d - f.outward[e] * t.p;
-  if (t.sa >= 0)
-    t.log = std::log((t.rb + t.sb) / (t.ra + t.sa));
-  else if (t.sb <= 0)
-    t.log = std::log((t.ra - t.sa) / (t.rb - t.sb));
-  else
-    t.log = std::log((t.rb + t.sb) * (t.ra - t.sa) / t.h2);
+  t.log = edge_log(t.sa, t.sb, t.ra, t.rb, t.h2);
   return t;
-}
-
-// van Oosterom and Strackee 1983, signed so that it is positive on the side of n.
-Real solid_angle(const PanelFrame& f, const Vec3& x) {
-  const Vec3 q0 = f.vertex[0] - x, q1 = f.vertex[1] - x, q2 = f.vertex[2] - x;
-  const Real l0 = norm(q0), l1 = norm(q1), l2 = norm(q2);
-  return -2 * std::atan2(dot(q0, cross(q1, q2)), l0 * l1 * l2 + dot(q0, q1) * l2 + dot(q1, q2) * l0 + dot(q2, q0) * l1);
-}
-
-struct PlaneTerms {
-  Real d = 0, omega = 0;
-};
-PlaneTerms plane_terms(const PanelFrame& f, const Vec3& x, Side side) {
-  if (side == Side::kOnSurface) return {0, 0};
-  if (side == Side::kInterior) return {0, -2 * std::numbers::pi};
-  const Real d = dot(x - f.vertex[0], f.normal);
-  return {d, d == 0 ? 0 : solid_angle(f, x)};
 }
 
 }  // namespace
@@ -96,7 +72,7 @@ void integrate_panel(const PanelFrame& f, const Vec3& x, Side side, PanelValues&
 void integrate_panel_gradient(const PanelFrame& f, const Vec3& x, Side side, PanelGradients& out) {
   const PlaneTerms plane = plane_terms(f, x, side);
   const Vec3& n = f.normal;
-  const Real d = plane.d, clamp = kClamp * f.longest2;
+  const Real d = plane.d;
   Real inverse = -d * plane.omega;
   Vec3 sum_ml, omega_k;
   Mat3 second;  // A,jk without the normal part: - sum_e m_j gL_k
@@ -104,13 +80,7 @@ void integrate_panel_gradient(const PanelFrame& f, const Vec3& x, Side side, Pan
   for (int e = 0; e < 3; ++e) {
     const EdgeTerms t = edge_terms(f, e, x, d);
     const Vec3 &m = f.outward[e], &tg = f.tangent[e];
-    Real cd = t.sb / t.rb - t.sa / t.ra, e0 = 0;
-    if (t.sa * t.sb > 0) {  // the difference above would cancel
-      e0 = (t.sb - t.sa) * (t.sb + t.sa) / (t.ra * t.rb * (t.sb * t.ra + t.sa * t.rb));
-      cd = e0 * t.h2;
-    } else {
-      e0 = cd / std::max(t.h2, clamp);
-    }
+    const auto [e0, cd] = edge_cube(t.sa, t.sb, t.ra, t.rb, t.h2);
     const Real e1 = 1 / t.ra - 1 / t.rb, e2 = t.log - cd;
     const Vec3 log_gradient = t.hv * -e0 + tg * e1;
     const Mat3 r = Mat3::identity() * t.log -
