@@ -20,6 +20,12 @@ void check(const SurfaceMesh& in, const RemeshOptions& o) {
   if (!o.locked.empty() && o.locked.size() != in.vertex_count())
     throw InputError(fmt::format("remesh: {} lock flags for {} vertices; give none or one each", o.locked.size(),
                                  in.vertex_count()));
+  if (!o.size.empty() && o.size.size() != in.vertex_count())
+    throw InputError(fmt::format("remesh: {} target lengths for {} vertices; give none or one each", o.size.size(),
+                                 in.vertex_count()));
+  for (const Real size : o.size)
+    if (!(size > 0) || !std::isfinite(size))
+      throw InputError(fmt::format("remesh: a target length is {}; give positive lengths in metres", size));
 }
 
 // Each face takes `source` from the input face it lies on.
@@ -56,6 +62,13 @@ void measure(const SurfaceMesh& in, const SurfaceMesh& out, RemeshReport& report
 }  // namespace
 
 std::vector<std::uint8_t> lock_good_regions(const SurfaceMesh& mesh, Real edge_length, Real distance_limit) {
+  return lock_good_regions(mesh, std::vector<Real>(mesh.vertex_count(), edge_length), distance_limit);
+}
+
+std::vector<std::uint8_t> lock_good_regions(const SurfaceMesh& mesh, const std::vector<Real>& size,
+                                            Real distance_limit) {
+  SHERD_CHECK(size.size() == mesh.vertex_count(), "{} target lengths for {} vertices", size.size(),
+              mesh.vertex_count());
   constexpr Real kPoor = 15 * std::numbers::pi / 180;
   const std::size_t n = mesh.vertex_count();
   std::vector<Real> away(n, std::numeric_limits<Real>::infinity());
@@ -70,8 +83,10 @@ std::vector<std::uint8_t> lock_good_regions(const SurfaceMesh& mesh, Real edge_l
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     bool poor = smallest_angle({mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)}) < kPoor;
     for (int k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(k);
       const Real length = distance(mesh.corner(t, k), mesh.corner(t, (k + 1) % 3));
-      poor = poor || length < 0.5 * edge_length || length > 1.6 * edge_length;
+      const Real target = 0.5 * (size[mesh.triangles[t][i]] + size[mesh.triangles[t][(i + 1) % 3]]);
+      poor = poor || length < 0.5 * target || length > 1.6 * target;
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = mesh.triangles[t][k];

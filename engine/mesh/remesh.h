@@ -1,5 +1,6 @@
-// Isotropic, feature-preserving remeshing to one edge length: split long edges, collapse short ones, flip, smooth
-// tangentially, and stay on the input surface (Botsch & Kobbelt 2004; the paper's local remeshing rules on the body).
+// Isotropic, feature-preserving remeshing to one edge length, or to a graded one: split long edges, collapse short
+// ones, flip, smooth tangentially, and stay on the input surface (Botsch & Kobbelt 2004; the paper's local remeshing
+// rules on the body).
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,9 +11,12 @@
 namespace sherd {
 
 struct RemeshOptions {
-  Real edge_length = 0;                   // target h, metres; edges come out between about 0.8 h and 1.33 h
-  Real feature_angle = 40;                // degrees: edges whose normals differ by more are creases
-  int iterations = 5;                     // >= 0; 0 only repairs slivers
+  Real edge_length = 0;     // target h, metres; edges come out between about 0.8 h and 1.33 h
+  Real feature_angle = 40;  // degrees: edges whose normals differ by more are creases
+  int iterations = 5;       // >= 0; 0 only repairs slivers
+  // Empty, or the target at each vertex of the input, metres, positive (linear in between; engine/mesh/sizing.h makes
+  // it). `edge_length` is then what features are judged by, and the unit of the report's deviations.
+  std::vector<Real> size = {};
   std::vector<std::uint8_t> locked = {};  // empty, or one entry a vertex: nonzero vertices keep their place, and edges
                                           // and faces between locked vertices stay as they are
 };
@@ -43,5 +47,7 @@ RemeshReport remesh(const SurfaceMesh& in, const RemeshOptions& options, Surface
 // from every face with an angle below 15 degrees or an edge outside [0.5, 1.6] edge_length. A fragment remeshed with
 // them changes near its new walls only, and its volume and untouched faces stay what they were.
 std::vector<std::uint8_t> lock_good_regions(const SurfaceMesh& mesh, Real edge_length, Real distance);
+// The same for a graded target, one length a vertex (metres).
+std::vector<std::uint8_t> lock_good_regions(const SurfaceMesh& mesh, const std::vector<Real>& size, Real distance);
 
 }  // namespace sherd

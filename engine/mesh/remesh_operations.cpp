@@ -11,8 +11,8 @@ constexpr Real kDegree = std::numbers::pi / 180;
 const Real kCosTurn = std::cos(30 * kDegree);  // how far an operation may turn a face
 const Real kCosFold = std::cos(80 * kDegree);  // dihedral turn a smooth edge should not exceed
 constexpr Real kSliver = 1e-3;                 // altitude / longest edge below which a face's own normal is not trusted
-constexpr Real kTiny = 0.02;                   // of h: features closer than this may be merged to remove a sliver
-constexpr Real kPoorAngle = 10 * kDegree;      // operations may make faces this poor at most, or as poor as before
+constexpr Real kTiny = 0.02;  // of the target length: features closer than this may be merged to remove a sliver
+constexpr Real kPoorAngle = 10 * kDegree;  // operations may make faces this poor at most, or as poor as before
 
 Vec3 area_normal(const std::array<Vec3, 3>& c) {
   return cross(c[1] - c[0], c[2] - c[0]);
@@ -71,8 +71,8 @@ bool Remesher::normal_agrees(const NewFace& after, const std::array<Vec3, 3>& be
   const Real ln = norm(n), lo = norm(o);
   if (!(ln > 0)) return false;
   const Real l2 = longest2(before);
-  if (lo > kSliver * l2 && !(repairing && lo * lo < kTiny * kTiny * h_ * h_ * l2))
-    return dot(n, o) > kCosTurn * ln * lo;
+  const Real tiny = kTiny * target(after.vertex[0]);
+  if (lo > kSliver * l2 && !(repairing && lo * lo < tiny * tiny * l2)) return dot(n, o) > kCosTurn * ln * lo;
   // A sliver, or (in repair) a face thinner than anything the target length can show: ask the input surface.
   const Vec3 centre = (after.corner[0] + after.corner[1] + after.corner[2]) / 3.0;
   const std::uint32_t f = after.face;
@@ -123,10 +123,11 @@ bool Remesher::clear(const Patch& after, const std::vector<std::uint32_t>& repla
 // Faces around the two ends look in opposite directions: the edge spans a thin sheet.
 bool Remesher::pinches_a_sheet(std::uint32_t h) const {
   // Faces about to vanish say nothing.
+  const Real tiny = kTiny * edge_target(h);
   const auto normal = [&](std::uint32_t t) {
     const auto c = mesh_.corners(t);
     const Vec3 n = area_normal(c);
-    return norm2(n) > kTiny * kTiny * h_ * h_ * longest2(c) ? normalized(n) : Vec3{};
+    return norm2(n) > tiny * tiny * longest2(c) ? normalized(n) : Vec3{};
   };
   bool pinches = false;
   mesh_.for_out(mesh_.from(h), [&](std::uint32_t x) {
@@ -142,14 +143,14 @@ bool Remesher::may_collapse(std::uint32_t h, bool repairing) const {
   if (features_.role[a] == VertexRole::kFree) return true;
   if (features_.role[a] == VertexRole::kLine && mesh_.line[h] == features_.line[a]) return true;
   // Features closer than anything the target length can show: only to remove a sliver, never across a thin sheet.
-  return repairing && distance(mesh_.position[a], mesh_.position[b]) < kTiny * h_ && !pinches_a_sheet(h);
+  return repairing && distance(mesh_.position[a], mesh_.position[b]) < kTiny * edge_target(h) && !pinches_a_sheet(h);
 }
 
 bool Remesher::try_collapse(std::uint32_t h, bool repairing) {
   if (!may_collapse(h, repairing) || !mesh_.can_collapse(h)) return false;
   const std::uint32_t a = mesh_.from(h), b = mesh_.to(h);
   collapse_patch(h, before_, after_);
-  const Real limit = 4.0 / 3 * h_;
+  const Real limit = 4.0 / 3 * edge_target(h);
   Real old_longest = 0, new_longest = 0;
   Real old_angle = std::min(smallest_angle(mesh_.corners(h / 3)), smallest_angle(mesh_.corners(mesh_.twin[h] / 3)));
   Real new_angle = std::numbers::pi;
@@ -163,7 +164,7 @@ bool Remesher::try_collapse(std::uint32_t h, bool repairing) {
   }
   if (!repairing && new_longest > limit * limit && new_longest > old_longest) return false;
   // In a cluster of tiny edges the first collapses cannot improve the angle yet; each still removes a vertex.
-  const bool tiny = repairing && distance(mesh_.position[a], mesh_.position[b]) < kTiny * h_;
+  const bool tiny = repairing && distance(mesh_.position[a], mesh_.position[b]) < kTiny * edge_target(h);
   if (new_angle < kPoorAngle && new_angle <= (tiny ? 0.3 : 1.0) * old_angle) return false;
   if (!turns_little(before_, after_, repairing) || !clear(after_, replaced_)) return false;
   // A vertex that joins two lines, or a line it was not part of, becomes a fixed one.
@@ -195,6 +196,7 @@ bool Remesher::try_split(std::uint32_t h, const Vec3& p, Real arc) {
   features_.role.push_back(line == kNone ? VertexRole::kFree : VertexRole::kLine);
   features_.line.push_back(line);
   features_.arc.push_back(arc);
+  if (!size_.empty()) size_.push_back(0.5 * (target(v[0]) + target(v[2])));
   const auto count = static_cast<std::uint32_t>(mesh_.triangle.size());
   tree_.update(mesh_, h / 3), tree_.update(mesh_, t / 3);
   tree_.add(mesh_, count - 2), tree_.add(mesh_, count - 1);

@@ -9,15 +9,16 @@ namespace {
 constexpr Real kDegree = std::numbers::pi / 180;
 
 struct EdgeKey {
-  Real length;
+  Real length;            // over its target, times the mesh's
   std::uint32_t h, a, b;  // the half-edge and its ends when the pass began
 };
 
-std::vector<EdgeKey> edges(const EditMesh& mesh, Real low, Real high) {
+template <class F>
+std::vector<EdgeKey> edges(const EditMesh& mesh, Real low, Real high, const F& scale) {
   std::vector<EdgeKey> keys;
   for (std::uint32_t h = 0; h < mesh.twin.size(); ++h) {
     if (!mesh.alive(h / 3) || h > mesh.twin[h]) continue;
-    const Real length = mesh.edge_length(h);
+    const Real length = mesh.edge_length(h) * scale(h);
     if (length > low && length < high) keys.push_back({length, h, mesh.from(h), mesh.to(h)});
   }
   return keys;
@@ -40,6 +41,7 @@ Remesher::Remesher(const SurfaceMesh& in, EditMesh mesh, const RemeshOptions& op
       locked_(options.locked),
       input_(in),
       input_bvh_(in),
+      size_(options.size),
       h_(options.edge_length) {
   features_ = find_feature_lines(mesh_, options.feature_angle, h_, options.locked);
 }
@@ -54,6 +56,7 @@ void Remesher::run() {
     collapse_short();
     flip_all();
     smooth_all();
+    update_sizes();
     repair(i + 1 == options_.iterations ? 20 * kDegree : 5 * kDegree);
   }
   if (options_.iterations > 0) smooth_all();
@@ -82,12 +85,35 @@ std::optional<TriangleBvh::Closest> Remesher::project(const Vec3& p, const Vec3&
   return best;
 }
 
+Real Remesher::size_at(const TriangleBvh::Closest& on_input) const {
+  const Triangle& t = input_.triangles[on_input.face];
+  const auto& c = input_bvh_.corners(on_input.face);
+  const Vec3 n = cross(c[1] - c[0], c[2] - c[0]), p = on_input.point;
+  const Real area2 = norm2(n);
+  if (!(area2 > 0)) return options_.size[t[0]];
+  Real sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &a = c[(k + 1) % 3], &b = c[(k + 2) % 3];
+    sum += std::clamp(dot(cross(b - a, p - a), n) / area2, 0.0, 1.0) * options_.size[t[k]];
+  }
+  // The weights sum to 1 but for rounding, which may be large on slivers.
+  const auto [low, high] = std::minmax({options_.size[t[0]], options_.size[t[1]], options_.size[t[2]]});
+  return std::clamp(sum, low, high);
+}
+
+// New vertices start with the mean of their edge's ends, moved ones with what they had.
+void Remesher::update_sizes() {
+  if (size_.empty()) return;
+  for (std::uint32_t v = 0; v < mesh_.position.size(); ++v)
+    if (mesh_.out[v] != kNone) size_[v] = size_at(input_bvh_.closest(mesh_.position[v]));
+}
+
 void Remesher::collapse_short() {
-  std::vector<EdgeKey> keys = edges(mesh_, -1, 0.8 * h_);
+  std::vector<EdgeKey> keys = edges(mesh_, -1, 0.8 * h_, [&](std::uint32_t h) { return h_ / edge_target(h); });
   std::sort(keys.begin(), keys.end(),
             [](const EdgeKey& a, const EdgeKey& b) { return a.length != b.length ? a.length < b.length : a.h < b.h; });
   for (const EdgeKey& k : keys) {
-    if (!still_there(mesh_, k) || mesh_.edge_length(k.h) >= 0.8 * h_) continue;
+    if (!still_there(mesh_, k) || mesh_.edge_length(k.h) >= 0.8 * edge_target(k.h)) continue;
     const std::uint32_t t = mesh_.twin[k.h];
     const bool forward = features_.role[k.a] <= features_.role[k.b];
     if (!try_collapse(forward ? k.h : t, false)) try_collapse(forward ? t : k.h, false);
@@ -98,7 +124,7 @@ void Remesher::split_long() {
   const Real limit = 4.0 / 3 * h_;
   // A long edge needs several rounds of halving.
   for (int round = 0; round < 40; ++round) {
-    std::vector<EdgeKey> keys = edges(mesh_, limit, 1e300);
+    std::vector<EdgeKey> keys = edges(mesh_, limit, 1e300, [&](std::uint32_t h) { return h_ / edge_target(h); });
     std::sort(keys.begin(), keys.end(), [](const EdgeKey& a, const EdgeKey& b) {
       return a.length != b.length ? a.length > b.length : a.h < b.h;
     });
@@ -127,9 +153,10 @@ void Remesher::split_free_edge(std::uint32_t h) {
   const std::uint32_t f = h / 3;
   const Vec3 n = normalized(normal(f) + normal(mesh_.twin[h] / 3));
   const auto found = project(middle, n, mesh_.faces.kind[f], mesh_.faces.crack[f]);
-  if (!found || found->distance2 > 0.25 * h_ * h_) return;
+  const Real h2 = edge_target(h) * edge_target(h);
+  if (!found || found->distance2 > 0.25 * h2) return;
   // A midpoint far off the surface that cannot be lifted stays a long edge: fewer vertices rather than wrong ones.
-  if (!try_split(h, found->point, 0) && found->distance2 < 0.0025 * h_ * h_) try_split(h, middle, 0);
+  if (!try_split(h, found->point, 0) && found->distance2 < 0.0025 * h2) try_split(h, middle, 0);
 }
 
 void Remesher::flip_all() {
@@ -162,15 +189,19 @@ void Remesher::smooth_all() {
 
 bool Remesher::smooth_line_vertex(std::uint32_t v) {
   const std::uint32_t line = features_.line[v];
-  Real sum = 0;
-  int count = 0;
+  Real end[2] = {0, 0}, wanted[2] = {1, 1};
+  std::size_t count = 0;
   mesh_.for_out(v, [&](std::uint32_t h) {
-    if (mesh_.line[h] == line) sum += arc_on(line, mesh_.to(h)), ++count;
+    if (mesh_.line[h] != line) return;
+    if (count < 2) end[count] = arc_on(line, mesh_.to(h)), wanted[count] = edge_target(h);
+    ++count;
   });
   if (count != 2) return false;
+  // Where both parts are equally long in units of their targets.
+  const Real share = wanted[1] / (wanted[0] + wanted[1]), goal = share * end[0] + (1 - share) * end[1];
   for (const Real step : {1.0, 0.4}) {
-    const Real arc = features_.arc[v] + step * (0.5 * sum - features_.arc[v]);
-    if (std::abs(arc - features_.arc[v]) < 1e-3 * h_) return false;
+    const Real arc = features_.arc[v] + step * (goal - features_.arc[v]);
+    if (std::abs(arc - features_.arc[v]) < 1e-3 * target(v)) return false;
     if (!try_move(v, features_.lines[line].at(arc))) continue;
     features_.arc[v] = arc;
     return true;
@@ -178,13 +209,14 @@ bool Remesher::smooth_line_vertex(std::uint32_t v) {
   return false;
 }
 
-// Area-weighted mean of the centroids around: evens out the areas.
+// Area-weighted mean of the centroids around: evens out the areas, in units of the target length squared.
 Vec3 Remesher::smoothed_position(std::uint32_t v) const {
   Vec3 sum;
   Real weight = 0;
   mesh_.for_out(v, [&](std::uint32_t h) {
     const auto c = mesh_.corners(h / 3);
-    const Real area = norm(cross(c[1] - c[0], c[2] - c[0]));
+    const Real across = 0.5 * (target(mesh_.to(h)) + target(mesh_.tip(h))) / h_;
+    const Real area = norm(cross(c[1] - c[0], c[2] - c[0])) / (across * across);
     sum += area * (c[0] + c[1] + c[2]) / 3.0;
     weight += area;
   });
@@ -196,10 +228,11 @@ bool Remesher::smooth_free_vertex(std::uint32_t v) {
   Vec3 d = smoothed_position(v) - x;
   d -= n * dot(d, n);
   const std::uint32_t f = mesh_.out[v] / 3;
+  const Real h2 = target(v) * target(v);
   for (const Real step : {1.0, 0.4}) {
     const auto found = project(x + d * step, n, mesh_.faces.kind[f], mesh_.faces.crack[f]);
-    if (!found || found->distance2 > 0.25 * h_ * h_) continue;
-    if (distance2(found->point, x) < 1e-6 * h_ * h_) return false;
+    if (!found || found->distance2 > 0.25 * h2) continue;
+    if (distance2(found->point, x) < 1e-6 * h2) return false;
     if (try_move(v, found->point)) return true;
   }
   return false;
@@ -230,7 +263,7 @@ void Remesher::repair_face(std::uint32_t t, Real angle) {
   });
   const Real now = smallest_angle(mesh_.corners(t));
   // Needle: the short edge goes, along the feature line first.
-  if (mesh_.edge_length(h[0]) < 0.6 * h_) {
+  if (mesh_.edge_length(h[0]) < 0.6 * edge_target(h[0])) {
     const bool forward = features_.role[mesh_.from(h[0])] <= features_.role[mesh_.to(h[0])];
     const std::uint32_t twin = mesh_.twin[h[0]];
     if (try_collapse(forward ? h[0] : twin, true) || try_collapse(forward ? twin : h[0], true)) return;
@@ -269,8 +302,9 @@ bool Remesher::split_cap(std::uint32_t h) {
     arc = std::clamp(l.nearest(p), std::min(s0, s1), std::max(s0, s1));
     foot = l.at(arc);
   }
-  if (!free && distance(foot, p) > 0.02 * h_) return false;
-  if (std::min(distance(foot, a), distance(foot, b)) < 0.05 * h_) return false;
+  const Real size = target(v);
+  if (!free && distance(foot, p) > 0.02 * size) return false;
+  if (std::min(distance(foot, a), distance(foot, b)) < 0.05 * size) return false;
   if (!try_split(h, foot, arc)) return false;
   const auto m = static_cast<std::uint32_t>(mesh_.position.size() - 1);
   const auto edge = [&](std::uint32_t from, const auto& wanted) {

@@ -59,6 +59,11 @@ class Remesher {
   bool clear(const Patch& after, const std::vector<std::uint32_t>& replaced);
   bool locked(std::uint32_t v) const { return v < locked_.size() && locked_[v] != 0; }
   bool locked_edge(std::uint32_t h) const { return locked(mesh_.from(h)) && locked(mesh_.to(h)); }
+  // Target length at a vertex (also one about to be made) and on an edge, metres.
+  Real target(std::uint32_t v) const { return v < size_.size() ? size_[v] : h_; }
+  Real edge_target(std::uint32_t h) const { return 0.5 * (target(mesh_.from(h)) + target(mesh_.to(h))); }
+  Real size_at(const TriangleBvh::Closest& on_input) const;
+  void update_sizes();
   Real arc_on(std::uint32_t line, std::uint32_t v) const;
   Vec3 vertex_normal(std::uint32_t v) const;
 
@@ -70,6 +75,7 @@ class Remesher {
   TriangleBvh input_bvh_;
   FeatureLines features_;
   FaceTree tree_;
+  std::vector<Real> size_;  // per vertex of the working mesh; empty when h_ holds everywhere
   Real h_;
   Patch before_, after_;  // scratch
   std::vector<std::uint32_t> replaced_, near_;
