@@ -70,27 +70,43 @@ void fill_rows(const Boundary& b, const TractionKernel& kernel, std::size_t p, s
   }
 }
 
-// Means over the faces of the traction the layer has to carry, Pa; interleaved. Means, not centroid values, so that the
-// net force is the load's. The three-point rule is exact for the stress of a force linear in x.
-std::vector<Real> face_tractions(const Boundary& b, const Load& load, const BodyForceField& field) {
-  std::vector<Vec3> t(b.panels.size());
-  parallel_for(t.size(), 16, [&](std::size_t i) {
-    if (!load.face_traction.empty()) t[i] = load.face_traction[i];
+// Means over the faces, Pa, interleaved: means, not centroid values, so that the net force is the load's.
+struct FaceTractions {
+  std::vector<Real> applied;     // of everything that acts on the surface
+  std::vector<Real> body_force;  // sigma_p n
+
+  explicit FaceTractions(std::size_t faces) : applied(3 * faces, 0), body_force(3 * faces, 0) {}
+  static void add(std::vector<Real>& to, std::size_t face, const Vec3& t) {
+    for (int k = 0; k < 3; ++k) to[3 * face + static_cast<std::size_t>(k)] += t[k];
+  }
+};
+
+FaceTractions face_tractions(const Boundary& b, const Load& load, const BodyForceField& field) {
+  FaceTractions out(b.panels.size());
+  parallel_for(b.panels.size(), 16, [&](std::size_t t) {
+    const PanelFrame& f = b.panels[t];
+    if (!load.face_traction.empty()) FaceTractions::add(out.applied, t, load.face_traction[t]);
     if (!load.quadratic_traction.empty())  // only the midpoints' shape functions have a mean, a third each
-      for (std::size_t k = 3; k < 6; ++k) t[i] += load.quadratic_traction[6 * i + k] / 3;
+      for (std::size_t k = 3; k < 6; ++k) FaceTractions::add(out.applied, t, load.quadratic_traction[6 * t + k] / 3.0);
     if (field.zero()) return;
-    const PanelFrame& f = b.panels[i];
-    for (const TrianglePoint& p : kGauss3)
-      t[i] -= field.stress(f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c) * f.normal * p.weight;
+    for (const TrianglePoint& p : kGauss3)  // exact for the stress of a force linear in x
+      FaceTractions::add(out.body_force, t,
+                         field.stress(f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c) * f.normal * p.weight);
   });
   for (std::size_t i = 0; i < load.panels.size(); ++i) {
     const auto& c = load.panels.corners[i];
     const std::uint32_t face = load.panels.face[i];
-    t[face] += load.panels.traction[i] * (0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) / b.panels[face].area);
+    const Real area = 0.5 * norm(cross(c[1] - c[0], c[2] - c[0]));
+    FaceTractions::add(out.applied, face, load.panels.traction[i] * (area / b.panels[face].area));
   }
-  std::vector<Real> out;
-  for (const Vec3& v : t) out.insert(out.end(), {v.x, v.y, v.z});
   return out;
+}
+
+// Root of the area-weighted mean square of interleaved vectors.
+Real mean_size(const Boundary& b, std::span<const Real> x) {
+  Real sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) sum += b.panels[i / 3].area / b.area * x[i] * x[i];
+  return std::sqrt(sum);
 }
 
 std::vector<Real> areas(const Boundary& b) {
@@ -146,16 +162,17 @@ IndirectSolution IndirectBody::solve(const Load& load, const ParticularSolution&
     return s;
   }
   const std::size_t n = boundary_.panels.size();
-  const std::vector<Real> b = face_tractions(boundary_, load, body_force_field(load, particular));
-  std::vector<Real> x(b.size(), 0);
-  Real mean2 = 0, rigid2 = 0;
-  for (std::size_t i = 0; i < b.size(); ++i) mean2 += boundary_.panels[i / 3].area / boundary_.area * b[i] * b[i];
-  if (!std::isfinite(mean2)) {
+  const FaceTractions tractions = face_tractions(boundary_, load, body_force_field(load, particular));
+  std::vector<Real> b = tractions.applied, x(b.size(), 0);
+  for (std::size_t i = 0; i < b.size(); ++i) b[i] -= tractions.body_force[i];
+  const Real scale = mean_size(boundary_, tractions.applied) + mean_size(boundary_, tractions.body_force);
+  if (!std::isfinite(scale)) {
     s.reason = "the load is not finite";
     return s;
   }
+  Real rigid2 = 0;
   for (const Real c : modes_.coefficients(b)) rigid2 += c * c;
-  s.incompatibility = mean2 > 0 ? std::sqrt(rigid2 / mean2) : 0;
+  s.incompatibility = scale > 0 ? std::sqrt(rigid2) / scale : 0;
   const auto jacobi = [&](std::span<const Real> r, std::span<Real> z) {
     for (std::size_t p = 0; p < n; ++p) {
       const Vec3 v = inverse_blocks_[p] * Vec3{r[3 * p], r[3 * p + 1], r[3 * p + 2]};

@@ -30,9 +30,9 @@ struct IndirectSolution {
   std::string reason;  // when not ok
   Vec3Column density;  // of the single layer per triangle, Pa
   KrylovResult krylov;
-  // Share of the net force and moment in the load, |R^T W t'| / |t'|_W over the face means t' of what the layer has to
-  // carry: what the completion absorbed. Load panels and curved traction keep their force but not their moment on a
-  // face: a balanced load reads O(h), not 0.
+  // |R^T W (t - sigma_p n)| / (|t|_W + |sigma_p n|_W) over the faces' means: the share of the load in its net force and
+  // moment, which the completion absorbed. Tractions that vary over a face keep their force but not their moment: a
+  // balanced load of such reads O(h^2), not 0.
   Real incompatibility = 0;
 };
 
