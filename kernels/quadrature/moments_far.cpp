@@ -82,6 +82,13 @@ Sym3 square(const Vec3& r) {
   return {r.x * r.x, r.y * r.y, r.z * r.z, r.y * r.z, r.x * r.z, r.x * r.y};
 }
 
+// sum[m] += monomial[m] row, in rows that fill whole vector registers.
+template <int Rows, int Columns>
+void accumulate(const Real* monomial, const Real (&row)[Columns], Real (&sum)[Rows][Columns]) {
+  for (int m = 0; m < Rows; ++m)
+    for (int c = 0; c < Columns; ++c) sum[m][c] += monomial[m] * row[c];
+}
+
 }  // namespace
 
 bool panel_is_far(const PanelFrame& f, const Vec3& x) {
@@ -103,32 +110,42 @@ bool panel_is_far(const PanelFrame& f, const Vec3& x) {
 }
 
 void far_moments(const PanelFrame& f, const Vec3& x, PanelMoments& out) {
-  out = {};
+  Real sum[kCubicMonomials][8] = {};  // inverse, angle, dyad
   for_far_points(f, x, [&](Real weight, const Vec3& r, const Real(&monomial)[kCubicMonomials]) {
-    const Real one = 1 / norm(r), w1 = weight * one, w3 = w1 * one * one, wn = w3 * dot(r, f.normal);
-    const Sym3 rr = square(r) * w3;
-    for (int m = 0; m < kQuadraticMonomials; ++m) {
-      out.inverse[m] += w1 * monomial[m];
-      out.dyad[m] += rr * monomial[m];
-    }
-    for (int m = 0; m < kCubicMonomials; ++m) out.angle[m] += wn * monomial[m];
+    const Real one = 1 / norm(r), w1 = weight * one, w3 = w1 * one * one;
+    const Sym3 a = square(r) * w3;
+    const Real row[8] = {w1, w3 * dot(r, f.normal), a.xx, a.yy, a.zz, a.yz, a.xz, a.xy};
+    accumulate(monomial, row, sum);
   });
+  for (int m = 0; m < kCubicMonomials; ++m) out.angle[m] = sum[m][1];
+  for (int m = 0; m < kQuadraticMonomials; ++m) {
+    const Real(&q)[8] = sum[m];
+    out.inverse[m] = q[0];
+    out.dyad[m] = {q[2], q[3], q[4], q[5], q[6], q[7]};
+  }
 }
 
 void far_moment_gradients(const PanelFrame& f, const Vec3& x, PanelMomentGradients& out) {
-  out = {};
+  // Integrals of r / l^3 and of r_i r_j r_k / l^5, in the order xxx, yyy, zzz, xxy, xxz, yyx, yyz, zzx, zzy, xyz.
+  Real sum[kQuadraticMonomials][16] = {};
   for_far_points(f, x, [&](Real weight, const Vec3& r, const Real(&monomial)[kCubicMonomials]) {
-    const Real one = 1 / norm(r), w3 = weight * one * one * one, w5 = w3 * one * one;
-    const Vec3 g = r * -w3;
-    const Sym3 rr = square(r) * (-3 * w5);
-    const Sym3 d[3] = {rr * r.x + Sym3{2 * r.x, 0, 0, 0, r.z, r.y} * w3,
-                       rr * r.y + Sym3{0, 2 * r.y, 0, r.z, 0, r.x} * w3,
-                       rr * r.z + Sym3{0, 0, 2 * r.z, r.y, r.x, 0} * w3};
-    for (int m = 0; m < kQuadraticMonomials; ++m) {
-      out.inverse[m] += g * monomial[m];
-      for (int k = 0; k < 3; ++k) out.dyad[k][m] += d[k] * monomial[m];
-    }
+    const Real one = 1 / norm(r), w3 = weight * one * one * one;
+    const Vec3 g = r * w3, e = r * one;
+    const Real xx = e.x * e.x, yy = e.y * e.y, zz = e.z * e.z;
+    const Real row[16] = {g.x,      g.y,      g.z,      xx * g.x, yy * g.y,        zz * g.z, xx * g.y, xx * g.z,
+                          yy * g.x, yy * g.z, zz * g.x, zz * g.y, g.x * e.y * e.z, 0,        0,        0};
+    accumulate(monomial, row, sum);
   });
+  for (int m = 0; m < kQuadraticMonomials; ++m) {
+    const Real(&q)[16] = sum[m];
+    const Real x1 = q[0], y1 = q[1], z1 = q[2], *t = q + 3;
+    out.inverse[m] = {-x1, -y1, -z1};
+    // (delta_ik r_j + delta_jk r_i) / l^3 - 3 r_i r_j r_k / l^5
+    const Real xyz = -3 * t[9];
+    out.dyad[0][m] = {2 * x1 - 3 * t[0], -3 * t[5], -3 * t[7], xyz, z1 - 3 * t[4], y1 - 3 * t[3]};
+    out.dyad[1][m] = {-3 * t[3], 2 * y1 - 3 * t[1], -3 * t[8], z1 - 3 * t[6], xyz, x1 - 3 * t[5]};
+    out.dyad[2][m] = {-3 * t[4], -3 * t[6], 2 * z1 - 3 * t[2], y1 - 3 * t[8], x1 - 3 * t[7], xyz};
+  }
 }
 
 }  // namespace sherd

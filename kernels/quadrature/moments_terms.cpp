@@ -76,7 +76,9 @@ PanelView view_panel(const PanelFrame& f, const Vec3& x, Side side, bool cubes) 
     EdgeMoments& e = v.edge[a];
     const Real tu = dot(f.tangent[a], v.u), tw = dot(f.tangent[a], v.w);
     e.outward_u = tw, e.outward_w = -tu;
-    e.p = r2[a] < r2[b] ? u[a] * tw - w[a] * tu : u[b] * tw - w[b] * tu;  // rounding of the nearer corner
+    // From the nearer corner, and not from the rounded u, w: its rounding is relative to the distance from the edge
+    // where the panel's own coordinates allow.
+    e.p = dot(f.vertex[r2[a] < r2[b] ? a : b] - x, f.outward[a]);
     const PlaneEdge g{u[a], w[a], u[b], w[b], f.length[a], v.d};
     const Real middle2 = 0.5 * (r2[a] + r2[b]) - 0.25 * g.length * g.length;
     if (middle2 > 4 * g.length * g.length)

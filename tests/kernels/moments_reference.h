@@ -15,8 +15,12 @@ inline WideVec widen(const Vec3& v) {
   return {v.x, v.y, v.z};
 }
 
+inline Vec3 narrow(const WideVec& v) {
+  return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
+}
+
 struct Rule {
-  std::vector<Wide> node, weight;  // on [0, 1]
+  std::vector<Real> node, weight;  // on [0, 1]
 };
 inline Rule gauss_legendre(int n) {
   Rule rule;
@@ -31,16 +35,28 @@ inline Rule gauss_legendre(int n) {
       slope = n * (z * p1 - p0) / (z * z - 1);
       z -= p1 / slope;
     }
-    rule.node.push_back((1 - z) / 2);
-    rule.weight.push_back(1 / ((1 - z * z) * slope * slope));
+    rule.node.push_back(static_cast<Real>((1 - z) / 2));
+    rule.weight.push_back(static_cast<Real>(1 / ((1 - z * z) * slope * slope)));
   }
   return rule;
 }
 
-// Sums over the panel's monomials, as in PanelMoments, and for the gradients.
-struct Moments {
-  Wide inverse[kQuadraticMonomials] = {}, dyad[kQuadraticMonomials][6] = {}, angle[kCubicMonomials] = {};
-  Wide inverse_gradient[kQuadraticMonomials][3] = {}, dyad_gradient[3][kQuadraticMonomials][6] = {};
+// Sums with the panel's monomials, as in PanelMoments and PanelMomentGradients; Voigt order.
+struct Sums {
+  Real inverse[kQuadraticMonomials] = {}, dyad[kQuadraticMonomials][6] = {}, angle[kCubicMonomials] = {};
+  Real inverse_gradient[3][kQuadraticMonomials] = {}, dyad_gradient[3][kQuadraticMonomials][6] = {};
+
+  void add(const Sums& b) {
+    for (int m = 0; m < kCubicMonomials; ++m) angle[m] += b.angle[m];
+    for (int m = 0; m < kQuadraticMonomials; ++m) {
+      inverse[m] += b.inverse[m];
+      for (int v = 0; v < 6; ++v) dyad[m][v] += b.dyad[m][v];
+      for (int k = 0; k < 3; ++k) {
+        inverse_gradient[k][m] += b.inverse_gradient[k][m];
+        for (int v = 0; v < 6; ++v) dyad_gradient[k][m][v] += b.dyad_gradient[k][m][v];
+      }
+    }
+  }
 };
 
 class Integrator {
@@ -48,12 +64,11 @@ class Integrator {
   Integrator(const PanelFrame& panel, const Vec3& x, bool gradients)
       : x_(widen(x)), gradients_(gradients), rule_(gauss_legendre(12)) {
     const WideVec v[3] = {widen(panel.vertex[0]), widen(panel.vertex[1]), widen(panel.vertex[2])};
-    normal_ = cross(v[1] - v[0], v[2] - v[0]);
-    area_ = norm(normal_) / 2;
-    normal_ = normal_ / (2 * area_);
-    recurse({Corner{v[0], 0, 0}, Corner{v[1], 1, 0}, Corner{v[2], 0, 1}}, 140);
+    wide_normal_ = normalized(cross(v[1] - v[0], v[2] - v[0]));
+    normal_ = narrow(wide_normal_);
+    recurse({Corner{v[0], 0, 0}, Corner{v[1], 1, 0}, Corner{v[2], 0, 1}}, 100);  // parts touching x: 2^-100 of the area
   }
-  const Moments& result() const { return sum_; }
+  const Sums& result() const { return sum_; }
 
  private:
   struct Corner {
@@ -85,44 +100,58 @@ class Integrator {
       const WideVec edge = c[(e + 1) % 3].y - c[e].y, q = x_ - c[e].y;
       const Wide z = std::min(1.0L, std::max(0.0L, dot(q, edge) / norm2(edge)));
       nearest2 = std::min(nearest2, norm2(q - edge * z));
-      inside = inside && dot(cross(edge, q), normal_) >= 0;
+      inside = inside && dot(cross(edge, q), wide_normal_) >= 0;
     }
-    const Wide height = dot(x_ - c[0].y, normal_);
+    const Wide height = dot(x_ - c[0].y, wide_normal_);
     return inside ? std::abs(height) : std::sqrt(nearest2);
   }
+  // Extended precision places the corners; relative to x and at least a diameter away, double suffices inside the part.
   void add(const Part& c) {
-    const Wide jacobian = norm(cross(c[1].y - c[0].y, c[2].y - c[0].y));
+    const Real jacobian = static_cast<Real>(norm(cross(c[1].y - c[0].y, c[2].y - c[0].y)));
+    Vec3 r[3];
+    Real s[3], t[3];
+    for (int k = 0; k < 3; ++k) {
+      r[k] = narrow(x_ - c[k].y);
+      s[k] = static_cast<Real>(c[k].s), t[k] = static_cast<Real>(c[k].t);
+    }
+    Sums part;
     for (std::size_t i = 0; i < rule_.node.size(); ++i)
       for (std::size_t j = 0; j < rule_.node.size(); ++j) {
-        const Wide a = rule_.node[i], b = rule_.node[j] * a, w = rule_.weight[i] * rule_.weight[j] * a * jacobian;
-        const auto at = [&](auto f0, auto f1, auto f2) { return f0 + (f1 - f0) * (a - b) + (f2 - f0) * b; };
-        point(x_ - at(c[0].y, c[1].y, c[2].y), at(c[0].s, c[1].s, c[2].s), at(c[0].t, c[1].t, c[2].t), w);
+        const Real a = rule_.node[i], b = rule_.node[j] * a, w = rule_.weight[i] * rule_.weight[j] * a * jacobian;
+        const auto at = [&](const auto(&f)[3]) { return f[0] * (1 - a) + f[1] * (a - b) + f[2] * b; };
+        point(at(r), at(s), at(t), w, part);
       }
+    sum_.add(part);
   }
-  void point(const WideVec& r, Wide s, Wide t, Wide w) {
-    const Wide monomial[kCubicMonomials] = {1, s, t, s * s, s * t, t * t, s * s * s, s * s * t, s * t * t, t * t * t};
-    constexpr int kI[6] = {0, 1, 2, 1, 0, 0}, kJ[6] = {0, 1, 2, 2, 2, 1};
-    const Wide l = norm(r), w1 = w / l, w3 = w1 / (l * l), w5 = w3 / (l * l);
-    for (int m = 0; m < kCubicMonomials; ++m) sum_.angle[m] += monomial[m] * w3 * dot(r, normal_);
+  void point(const Vec3& r, Real s, Real t, Real w, Sums& sum) const {
+    const Real monomial[kCubicMonomials] = {1, s, t, s * s, s * t, t * t, s * s * s, s * s * t, s * t * t, t * t * t};
+    const Real one = 1 / norm(r), w1 = w * one, w3 = w1 * one * one, w5 = w3 * one * one;
+    const Real q[3] = {r.x, r.y, r.z}, height = dot(r, normal_) * w3;
+    for (int m = 0; m < kCubicMonomials; ++m) sum.angle[m] += monomial[m] * height;
+    Real dyad[6], gradient[3][6];
+    for (int v = 0; v < 6; ++v) {
+      const int i = kI[v], j = kJ[v];
+      dyad[v] = w3 * q[i] * q[j];
+      for (int k = 0; k < 3; ++k)
+        gradient[k][v] = w3 * ((i == k ? q[j] : 0) + (j == k ? q[i] : 0)) - 3 * w5 * q[i] * q[j] * q[k];
+    }
     for (int m = 0; m < kQuadraticMonomials; ++m) {
-      sum_.inverse[m] += monomial[m] * w1;
-      for (int v = 0; v < 6; ++v) sum_.dyad[m][v] += monomial[m] * w3 * r[kI[v]] * r[kJ[v]];
-      for (int k = 0; gradients_ && k < 3; ++k) {
-        sum_.inverse_gradient[m][k] -= monomial[m] * w3 * r[k];
-        for (int v = 0; v < 6; ++v) {
-          const int i = kI[v], j = kJ[v];
-          const Wide first = (i == k ? r[j] : 0) + (j == k ? r[i] : 0);
-          sum_.dyad_gradient[k][m][v] += monomial[m] * (w3 * first - 3 * w5 * r[i] * r[j] * r[k]);
-        }
+      sum.inverse[m] += monomial[m] * w1;
+      for (int v = 0; v < 6; ++v) sum.dyad[m][v] += monomial[m] * dyad[v];
+      if (!gradients_) continue;
+      for (int k = 0; k < 3; ++k) {
+        sum.inverse_gradient[k][m] -= monomial[m] * w3 * q[k];
+        for (int v = 0; v < 6; ++v) sum.dyad_gradient[k][m][v] += monomial[m] * gradient[k][v];
       }
     }
   }
 
-  WideVec x_, normal_;
-  Wide area_ = 0;
+  static constexpr int kI[6] = {0, 1, 2, 1, 0, 0}, kJ[6] = {0, 1, 2, 2, 2, 1};
+  WideVec x_, wide_normal_;
+  Vec3 normal_;
   bool gradients_;
   Rule rule_;
-  Moments sum_;
+  Sums sum_;
 };
 
 }  // namespace sherd::reference
