@@ -17,6 +17,8 @@ void check(const SurfaceMesh& in, const RemeshOptions& o) {
   if (!(o.feature_angle > 0 && o.feature_angle <= 180))
     throw InputError(fmt::format("remesh: feature_angle is {}; give degrees in (0, 180]", o.feature_angle));
   if (o.iterations < 0) throw InputError(fmt::format("remesh: iterations is {}; give 0 or more", o.iterations));
+  if (!(o.merge >= 0 && o.merge <= 0.5))
+    throw InputError(fmt::format("remesh: merge is {}; give a part of the target length from 0 to 0.5", o.merge));
   if (!o.locked.empty() && o.locked.size() != in.vertex_count())
     throw InputError(fmt::format("remesh: {} lock flags for {} vertices; give none or one each", o.locked.size(),
                                  in.vertex_count()));
@@ -46,8 +48,14 @@ void inherit_sources(const SurfaceMesh& in, const Remesher& work, SurfaceMesh& o
 }
 
 void measure(const SurfaceMesh& in, const SurfaceMesh& out, RemeshReport& report) {
-  Real smallest = std::numbers::pi;
+  Real smallest = std::numbers::pi, input_smallest = std::numbers::pi;
   const Real degree = std::numbers::pi / 180;
+  for (std::size_t t = 0; t < in.triangle_count(); ++t) {
+    const Real a = smallest_angle({in.corner(t, 0), in.corner(t, 1), in.corner(t, 2)});
+    input_smallest = std::min(input_smallest, a);
+    report.input_below_15 += a < 15 * degree;
+  }
+  report.input_min_angle = input_smallest / degree;
   for (std::size_t t = 0; t < out.triangle_count(); ++t) {
     const Real a = smallest_angle({out.corner(t, 0), out.corner(t, 1), out.corner(t, 2)});
     smallest = std::min(smallest, a);

@@ -14,6 +14,9 @@ struct RemeshOptions {
   Real edge_length = 0;     // target h, metres; edges come out between about 0.8 h and 1.33 h
   Real feature_angle = 40;  // degrees: edges whose normals differ by more are creases
   int iterations = 5;       // >= 0; 0 only repairs slivers
+  // Of the target length: where features (fixed vertices, different lines) closer than this force faces below 20
+  // degrees, they are merged, as long as no thin sheet is pinched and faces stay within it of the input. At most 0.5.
+  Real merge = 0.02;
   // Empty, or the target at each vertex of the input, metres, positive (linear in between; engine/mesh/sizing.h makes
   // it). `edge_length` is then what features are judged by, and the unit of the report's deviations.
   std::vector<Real> size = {};
@@ -30,9 +33,11 @@ struct RemeshReport {
   std::size_t blocked = 0;                // operations rejected because faces would have intersected
   Real min_angle = 0;                     // of all output faces, degrees
   std::size_t below_15 = 0, below_1 = 0;  // output faces with a smaller angle, degrees
-  Real max_deviation = 0;                 // of output vertices from the input surface, in units of h
-  Real max_face_deviation = 0;            // of output face centroids, in units of h
-  Real volume_change = 0;                 // (output - input) / input
+  Real input_min_angle = 0;               // the same of the input
+  std::size_t input_below_15 = 0;
+  Real max_deviation = 0;       // of output vertices from the input surface, in units of h
+  Real max_face_deviation = 0;  // of output face centroids, in units of h
+  Real volume_change = 0;       // (output - input) / input
 };
 
 // `in` is closed and 2-manifold (else the mesh is refused), without self-intersections (each operation is tested

@@ -11,7 +11,8 @@ constexpr Real kDegree = std::numbers::pi / 180;
 const Real kCosTurn = std::cos(30 * kDegree);  // how far an operation may turn a face
 const Real kCosFold = std::cos(80 * kDegree);  // dihedral turn a smooth edge should not exceed
 constexpr Real kSliver = 1e-3;                 // altitude / longest edge below which a face's own normal is not trusted
-constexpr Real kTiny = 0.02;  // of the target length: features closer than this may be merged to remove a sliver
+constexpr Real kTiny = 0.02;      // of the target length: features closer than this may be merged to remove a sliver
+constexpr Real kVanishing = 0.1;  // of the target length: thinner faces do not show which way a sheet looks
 constexpr Real kPoorAngle = 10 * kDegree;  // operations may make faces this poor at most, or as poor as before
 
 Vec3 area_normal(const std::array<Vec3, 3>& c) {
@@ -71,7 +72,7 @@ bool Remesher::normal_agrees(const NewFace& after, const std::array<Vec3, 3>& be
   const Real ln = norm(n), lo = norm(o);
   if (!(ln > 0)) return false;
   const Real l2 = longest2(before);
-  const Real tiny = kTiny * target(after.vertex[0]);
+  const Real tiny = merge_ * target(after.vertex[0]);
   if (lo > kSliver * l2 && !(repairing && lo * lo < tiny * tiny * l2)) return dot(n, o) > kCosTurn * ln * lo;
   // A sliver, or (in repair) a face thinner than anything the target length can show: ask the input surface.
   const Vec3 centre = (after.corner[0] + after.corner[1] + after.corner[2]) / 3.0;
@@ -123,7 +124,7 @@ bool Remesher::clear(const Patch& after, const std::vector<std::uint32_t>& repla
 // Faces around the two ends look in opposite directions: the edge spans a thin sheet.
 bool Remesher::pinches_a_sheet(std::uint32_t h) const {
   // Faces about to vanish say nothing.
-  const Real tiny = kTiny * edge_target(h);
+  const Real tiny = std::min(merge_, kVanishing) * edge_target(h);
   const auto normal = [&](std::uint32_t t) {
     const auto c = mesh_.corners(t);
     const Vec3 n = area_normal(c);
@@ -143,7 +144,7 @@ bool Remesher::may_collapse(std::uint32_t h, bool repairing) const {
   if (features_.role[a] == VertexRole::kFree) return true;
   if (features_.role[a] == VertexRole::kLine && mesh_.line[h] == features_.line[a]) return true;
   // Features closer than anything the target length can show: only to remove a sliver, never across a thin sheet.
-  return repairing && distance(mesh_.position[a], mesh_.position[b]) < kTiny * edge_target(h) && !pinches_a_sheet(h);
+  return repairing && distance(mesh_.position[a], mesh_.position[b]) < merge_ * edge_target(h) && !pinches_a_sheet(h);
 }
 
 bool Remesher::try_collapse(std::uint32_t h, bool repairing) {
@@ -165,7 +166,9 @@ bool Remesher::try_collapse(std::uint32_t h, bool repairing) {
   if (!repairing && new_longest > limit * limit && new_longest > old_longest) return false;
   // In a cluster of tiny edges the first collapses cannot improve the angle yet; each still removes a vertex.
   const bool tiny = repairing && distance(mesh_.position[a], mesh_.position[b]) < kTiny * edge_target(h);
-  if (new_angle < kPoorAngle && new_angle <= (tiny ? 0.3 : 1.0) * old_angle) return false;
+  // Nor in a strip of equal needles, which only merging looks for; the margin is for rounding.
+  const Real gain = merge_ > kTiny ? 1 - 1e-9 : 1.0;
+  if (new_angle < kPoorAngle && new_angle <= (tiny ? 0.3 : gain) * old_angle) return false;
   if (!turns_little(before_, after_, repairing) || !clear(after_, replaced_)) return false;
   // A vertex that joins two lines, or a line it was not part of, becomes a fixed one.
   const bool along = mesh_.line[h] != kNone && mesh_.line[h] == features_.line[a];

@@ -7,6 +7,7 @@ namespace sherd {
 namespace {
 
 constexpr Real kDegree = std::numbers::pi / 180;
+constexpr Real kMerge = 0.02;  // what is merged from the start
 
 struct EdgeKey {
   Real length;            // over its target, times the mesh's
@@ -42,7 +43,8 @@ Remesher::Remesher(const SurfaceMesh& in, EditMesh mesh, const RemeshOptions& op
       input_(in),
       input_bvh_(in),
       size_(options.size),
-      h_(options.edge_length) {
+      h_(options.edge_length),
+      merge_(std::min(options.merge, kMerge)) {
   features_ = find_feature_lines(mesh_, options.feature_angle, h_, options.locked);
 }
 
@@ -61,6 +63,17 @@ void Remesher::run() {
   }
   if (options_.iterations > 0) smooth_all();
   for (int i = 0; i < 3; ++i) repair(20 * kDegree);
+  // The closest features first: what they leave may be good enough.
+  while (merge_ < options_.merge) {
+    merge_ = std::min(2 * merge_, options_.merge);
+    for (int i = 0; i < 3; ++i) {
+      const std::size_t before = report_.collapses + report_.flips + report_.moves;
+      repair(20 * kDegree);
+      if (report_.collapses + report_.flips + report_.moves == before) break;
+      if (options_.iterations > 0) flip_all(), smooth_all();
+    }
+    repair(20 * kDegree);
+  }
 }
 
 std::optional<TriangleBvh::Closest> Remesher::project(const Vec3& p, const Vec3& n, FaceKind kind,
@@ -303,7 +316,7 @@ bool Remesher::split_cap(std::uint32_t h) {
     foot = l.at(arc);
   }
   const Real size = target(v);
-  if (!free && distance(foot, p) > 0.02 * size) return false;
+  if (!free && distance(foot, p) > merge_ * size) return false;
   if (std::min(distance(foot, a), distance(foot, b)) < 0.05 * size) return false;
   if (!try_split(h, foot, arc)) return false;
   const auto m = static_cast<std::uint32_t>(mesh_.position.size() - 1);

@@ -77,6 +77,7 @@ class Remesher {
   FaceTree tree_;
   std::vector<Real> size_;  // per vertex of the working mesh; empty when h_ holds everywhere
   Real h_;
+  Real merge_;  // features closer than this part of the target length are merged now; grows up to the option's
   Patch before_, after_;  // scratch
   std::vector<std::uint32_t> replaced_, near_;
 };

@@ -65,6 +65,13 @@ std::vector<Real> sizing_field(const SurfaceMesh& mesh, const std::vector<Real>&
   return size;
 }
 
+Real finest_target(const SurfaceMesh& mesh, const SizingOptions& options) {
+  check(options);
+  if (!(options.edge_per_thickness > 0) || mesh.vertex_count() == 0) return options.edge_length;
+  const std::vector<Real> size = sizing_field(mesh, wall_thickness(mesh).vertex, options);
+  return *std::min_element(size.begin(), size.end());
+}
+
 SurfaceMesh with_edges_halved(const SurfaceMesh& mesh, Real longest) {
   SurfaceMesh source = mesh;
   source.faces.resize(mesh.triangle_count());
@@ -98,6 +105,7 @@ RemeshReport remesh_graded(const SurfaceMesh& in, const SizingOptions& options, 
   check(options);
   RemeshOptions target;
   target.edge_length = options.edge_length;
+  target.merge = options.merge;
   if (!(options.edge_per_thickness > 0)) return remesh(in, target, out);
   const SurfaceMesh fine = with_edges_halved(in, options.edge_length);
   target.size = sizing_field(fine, wall_thickness(fine).vertex, options);

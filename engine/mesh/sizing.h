@@ -11,6 +11,7 @@ struct SizingOptions {
   Real edge_per_thickness = 0;  // edges at most this many times the wall thickness; 0: edge_length everywhere
   Real growth = 0.3;            // a target grows by at most this much per metre of way along the surface
   Real finest = 0.125;          // no target below this part of edge_length
+  Real merge = 0.02;            // of RemeshOptions
 };
 
 // Target length at each vertex of `mesh`, metres: min(edge_length, edge_per_thickness * thickness), not below the
@@ -18,6 +19,9 @@ struct SizingOptions {
 // options out of range.
 std::vector<Real> sizing_field(const SurfaceMesh& mesh, const std::vector<Real>& thickness,
                                const SizingOptions& options);
+
+// The smallest target of the mesh's own wall thickness, metres; edge_length when off or where nothing asks for less.
+Real finest_target(const SurfaceMesh& mesh, const SizingOptions& options);
 
 // The same polyhedron with no edge longer than `longest` (metres), by halving edges; attributes are inherited. Meshes
 // that are not closed and manifold, or would get more than two million triangles, come back as they are.

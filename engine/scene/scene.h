@@ -68,7 +68,8 @@ inline constexpr Real kDefaultEdge = 1.0 / 40;  // edge length where none is giv
 struct SceneBody {
   std::string name;  // unique; letters, digits, '_' and '-', so that it can name files
   std::variant<MeshSpec, ShapeSpec> source;
-  Real edge_length = 0;  // target edge of the surface mesh, m; 0 asks for 1/40 of the diagonal
+  Real edge_length = 0;         // target edge of the surface mesh, m; 0 asks for 1/40 of the diagonal
+  Real edge_per_thickness = 0;  // edges at most this many times as long as the wall is thick; 0: edge_length everywhere
   Anchor anchor = Anchor::kCentreOfMass;
   Vec3 position;          // m
   Vec3 rotation;          // rotation vector (unit axis times angle), radians, material to world

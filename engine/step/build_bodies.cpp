@@ -2,18 +2,21 @@
 
 #include <fmt/format.h>
 
-#include "engine/mesh/remesh.h"
+#include "engine/mesh/sizing.h"
 #include "engine/mesh/validate.h"
 #include "kernels/core/error.h"
 
 namespace sherd {
 namespace {
 
-void remesh_to(SurfaceMesh& mesh, Real edge_length, const std::string& name, std::vector<std::string>& messages) {
-  RemeshOptions options;
-  options.edge_length = edge_length;
+// Scans have creases closer than the target length: without merging them slivers of a few degrees remain.
+constexpr Real kMerge = 0.4;
+
+void remesh_to(SurfaceMesh& mesh, const SizingOptions& sizing, const std::string& name,
+               std::vector<std::string>& messages) {
+  const Real edge_length = sizing.edge_length;
   SurfaceMesh out;
-  const RemeshReport report = remesh(mesh, options, out);
+  const RemeshReport report = remesh_graded(mesh, sizing, out);
   if (report.status != RemeshStatus::kOk) {
     messages.push_back(
         fmt::format("remeshing to {:.4g} m was refused ({}): the mesh is used as it is", edge_length, report.reason));
@@ -22,9 +25,13 @@ void remesh_to(SurfaceMesh& mesh, Real edge_length, const std::string& name, std
   const MeshReport check = report_mesh(out);
   if (!is_valid(check))
     throw InputError(fmt::format("{}: remeshing gave an invalid surface:\n{}", name, to_text(check)));
-  messages.push_back(
-      fmt::format("remeshed to {:.4g} m: {} triangles, least angle {:.1f} degrees, volume changed by {:+.3f} %",
-                  edge_length, out.triangle_count(), report.min_angle, 100 * report.volume_change));
+  messages.push_back(fmt::format(
+      "remeshed to {:.4g} m{}: {} triangles, least angle {:.1f} degrees (was {:.2g}), {} below 15 (were "
+      "{}), volume changed by {:+.3f} %",
+      edge_length,
+      sizing.edge_per_thickness > 0 ? fmt::format(" and {:.3g} wall thicknesses", sizing.edge_per_thickness) : "",
+      out.triangle_count(), report.min_angle, report.input_min_angle, report.below_15, report.input_below_15,
+      100 * report.volume_change));
   mesh = std::move(out);
 }
 
@@ -34,7 +41,15 @@ BuiltBody build_body(const SceneBody& s, BodyId id) {
   BuiltBody built;
   SurfaceMesh mesh = scene_mesh(s, built.messages);
   built.edge_length = scene_edge_length(s, mesh);
-  if (std::holds_alternative<MeshSpec>(s.source)) remesh_to(mesh, built.edge_length, s.name, built.messages);
+  const SizingOptions sizing{
+      .edge_length = built.edge_length, .edge_per_thickness = s.edge_per_thickness, .merge = kMerge};
+  if (std::holds_alternative<MeshSpec>(s.source)) {
+    remesh_to(mesh, sizing, s.name, built.messages);
+  } else if (const Real finest = finest_target(mesh, sizing); finest < built.edge_length) {
+    // From a shape fine enough for the finest target, so that its curves are not those of coarse facets.
+    mesh = make_shape(std::get<ShapeSpec>(s.source), finest);
+    remesh_to(mesh, sizing, s.name, built.messages);
+  }
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) mesh.faces.source[t] = static_cast<std::int32_t>(t);
   Body& b = built.body;
   b.id = b.parent = id;

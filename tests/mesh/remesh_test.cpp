@@ -31,6 +31,7 @@ SurfaceMesh remeshed(const SurfaceMesh& in, const RemeshOptions& options, Remesh
   EXPECT_TRUE(valid(out));
   EXPECT_NEAR(report.volume_change, signed_volume(out) / signed_volume(in) - 1, 1e-12);
   EXPECT_NEAR(report.min_angle, report_mesh(out).min_angle, 1e-6);
+  EXPECT_NEAR(report.input_min_angle, report_mesh(in).min_angle, 1e-6);
   if (report_out) *report_out = report;
   return out;
 }
@@ -228,12 +229,55 @@ TEST(Remesh, GoodRegionsAreLockedAndPoorOnesAreNot) {
   EXPECT_GT(report.min_angle, 15);
 }
 
+// A cube whose edges along z at x = 0.5 are cut off by chamfers of `width`.
+SurfaceMesh chamfered_bar(Real width) {
+  SurfaceMesh mesh = make_box({1, 1, 1}, 0.25);
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    Vec3 p = mesh.vertices[i];
+    if (std::abs(p.y) > 0.49 && p.x > 0.49) p.x -= width;
+    if (std::abs(p.y) < 0.49 && std::abs(p.y) > 0.2 && p.x > 0.49) p.y = std::copysign(0.5 - width, p.y);
+    mesh.vertices.set(i, p);
+  }
+  return mesh;
+}
+
+TEST(Remesh, MergingFeaturesCloserThanTheTargetRemovesTheirSliversAndLittleElse) {
+  const Real width = 0.03, h = 0.25;
+  const SurfaceMesh in = chamfered_bar(width);
+  ASSERT_TRUE(valid(in));
+  RemeshReport kept, merged;
+  remeshed(in, {.edge_length = h}, &kept);
+  remeshed(in, {.edge_length = h, .merge = 0.4}, &merged);
+  EXPECT_GT(kept.below_15, 10u);  // bands 0.17 h wide: angles of some ten degrees
+  EXPECT_LT(merged.below_15, kept.below_15 / 2);
+  EXPECT_GT(merged.min_angle, kept.min_angle);
+  // Where a line moves onto the other one, `width` away, the row of faces behind it tilts: a wedge as wide as an edge
+  // of up to 4/3 h and `width` high, at each of two chamfers of length 1.
+  EXPECT_LT(std::abs(merged.volume_change), 2 * 0.5 * width * 4.0 / 3 * h);
+}
+
+TEST(Remesh, MergingNeverPinchesASheet) {
+  const Real h = 0.2;
+  for (const Real thickness : {0.3 * h, 0.05 * h}) {
+    const SurfaceMesh in = make_plate(1, 1, thickness, 0.1);
+    const SurfaceMesh out = remeshed(in, {.edge_length = h, .merge = 0.5});
+    EXPECT_NEAR(signed_volume(out), thickness, 1e-13);
+    EXPECT_NEAR(crease_length(out), 8 + 4 * thickness, 1e-12);
+  }
+}
+
+TEST(Remesh, MergingChangesNothingWhereTheMeshIsGood) {
+  const SurfaceMesh in = make_box({1, 1, 1}, 0.2);
+  EXPECT_EQ(remeshed(in, {.edge_length = 0.2, .merge = 0.4}), remeshed(in, {.edge_length = 0.2}));
+}
+
 TEST(Remesh, OpenMeshIsRefusedAndBadOptionsThrow) {
   SurfaceMesh in = make_box({1, 1, 1}, 0.5), out;
   EXPECT_THROW(remesh(in, {.edge_length = 0}, out), InputError);
   EXPECT_THROW(remesh(in, {.edge_length = std::nan("")}, out), InputError);
   EXPECT_THROW(remesh(in, {.edge_length = 1, .feature_angle = -1}, out), InputError);
   EXPECT_THROW(remesh(in, {.edge_length = 1, .iterations = -1}, out), InputError);
+  EXPECT_THROW(remesh(in, {.edge_length = 1, .merge = 0.6}, out), InputError);
   EXPECT_THROW(remesh(in, {.edge_length = 1, .locked = {1, 0}}, out), InputError);
   in.triangles.pop_back();
   in.faces = {};
@@ -253,6 +297,17 @@ TEST(Remesh, ScannedModelBecomesIsotropic) {
   EXPECT_LT(out.triangle_count(), 7000u);
   EXPECT_GT(report.min_angle, 15);
   EXPECT_LT(std::abs(report.volume_change), 1e-2);
+}
+
+TEST(Remesh, MergingLeavesScansWithFewSlivers) {
+  SurfaceMesh in;
+  if (!test::read_shared_ply("dev/cheburashka_13k.ply", in)) GTEST_SKIP() << "dev/cheburashka_13k.ply is not here";
+  RemeshReport kept, merged;
+  remeshed(in, {.edge_length = 0.025}, &kept);
+  remeshed(in, {.edge_length = 0.025, .merge = 0.4}, &merged);
+  EXPECT_GT(merged.min_angle, 2 * kept.min_angle);
+  EXPECT_LT(merged.below_15, kept.below_15);
+  EXPECT_LT(merged.max_face_deviation, 0.4);
 }
 
 }  // namespace

@@ -127,6 +127,8 @@ TEST_F(BadScene, ShapesMustBeSolids) {
             "scene.toml:3:63: body.shape.inner_radius: value 0.1 not allowed; allowed range 1e-06 to 0.0999 m");
   EXPECT_EQ(shape("kind = \"box\", size = [1, 0, 1]"),
             "scene.toml:3:35: body.shape.size[1]: value 0 not allowed; allowed range 1e-06 to 10000 m");
+  EXPECT_EQ(problem(kBall + "edge_per_thickness = -1\n"),
+            "scene.toml:4:22: body.edge_per_thickness: value -1 not allowed; allowed range 0 to 20");
   EXPECT_EQ(problem(kBall + "edge_length = 1e-9\n"),
             "scene.toml:4:15: body.edge_length: value 1e-09 not allowed; allowed range 0.00034641 to 0.34641 m");
 }
