@@ -12,6 +12,7 @@
 #include "kernels/core/random.h"
 #include "kernels/fundamental/kelvin.h"
 #include "kernels/quadrature/gauss.h"
+#include "kernels/quadrature/moments.h"
 
 namespace sherd {
 namespace {
@@ -33,6 +34,24 @@ void panel_closed_form(benchmark::State& state) {
   }
 }
 BENCHMARK(panel_closed_form)->ArgName("gradient")->Arg(0)->Arg(1);
+
+// Quadratic and cubic densities. `far` is beyond eight altitudes, where a Gauss rule replaces the closed form.
+void panel_moments(benchmark::State& state) {
+  const PanelFrame f = make_panel({0, 0, 0}, {1, 0.1, 0}, {0.3, 0.9, 0.2});
+  Random random(1);
+  PanelMoments v;
+  PanelMomentGradients g;
+  const Vec3 offset = f.normal * (state.range(1) ? 12.0 : 0.0);
+  for (auto _ : state) {
+    const Vec3 x = offset + Vec3{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)};
+    if (state.range(0))
+      integrate_panel_moment_gradients(f, x, Side::kAway, g);
+    else
+      integrate_panel_moments(f, x, Side::kAway, v);
+    benchmark::DoNotOptimize(v), benchmark::DoNotOptimize(g);
+  }
+}
+BENCHMARK(panel_moments)->ArgNames({"gradient", "far"})->Args({0, 0})->Args({1, 0})->Args({0, 1})->Args({1, 1});
 
 void panel_gauss7(benchmark::State& state) {
   Random random(1);

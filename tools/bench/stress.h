@@ -30,7 +30,8 @@ struct Row {
   bool ok = false;
   std::string reason;
   exact::SurfaceError error;
-  Real order = 0;  // observed, of the rms in the edge length against the row before; 0: none
+  exact::SurfaceError floor;  // of the recovery with exact displacements
+  Real order = 0;             // observed, of the rms in the edge length against the row before; 0: none
   KrylovResult krylov;
   exact::StageSeconds seconds;
   double peak_megabytes = 0;

@@ -20,6 +20,7 @@ std::vector<Row> measure_family(const exact::CaseFamily& family, exact::Formulat
     row.ok = solved.ok, row.reason = solved.reason;
     row.krylov = solved.krylov, row.seconds = solved.seconds, row.peak_megabytes = solved.peak_megabytes;
     if (row.ok) row.error = exact::surface_error(c, solved);
+    row.floor = exact::recovery_floor(c, solved);
     // Errors at the level of the solver's tolerance have no order.
     if (!rows.empty() && row.ok && rows.back().ok && row.error.all.rms > 1e-3 * options.elastic.krylov.tolerance)
       row.order = std::log(rows.back().error.all.rms / row.error.all.rms) / std::log(rows.back().edge / row.edge);

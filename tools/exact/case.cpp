@@ -50,17 +50,28 @@ const CaseFamily& find_family(std::string_view name) {
   throw InputError(fmt::format("no exact case is called '{}'; choose one of:{}", name, names));
 }
 
-Load make_load(const ExactCase& c) {
+Load make_load(const ExactCase& c, TractionDetail detail) {
   Load load;
   load.body_force = c.body_force;
-  load.face_traction.resize(c.mesh.triangle_count());
-  for (std::size_t t = 0; t < c.mesh.triangle_count(); ++t) {
+  const std::size_t triangles = c.mesh.triangle_count();
+  if (detail == TractionDetail::kConstant) {
+    load.face_traction.resize(triangles);
+    for (std::size_t t = 0; t < triangles; ++t) {
+      const Vec3 n = normalized(c.mesh.area_normal2(t));
+      Vec3 mean;
+      for (const TrianglePoint& p : kGauss7)
+        mean +=
+            c.traction(c.mesh.corner(t, 0) * p.a + c.mesh.corner(t, 1) * p.b + c.mesh.corner(t, 2) * p.c, n) * p.weight;
+      load.face_traction.set(t, mean);
+    }
+    return load;
+  }
+  load.quadratic_traction.reserve(6 * triangles);
+  for (std::size_t t = 0; t < triangles; ++t) {
     const Vec3 n = normalized(c.mesh.area_normal2(t));
-    Vec3 mean;
-    for (const TrianglePoint& p : kGauss7)
-      mean +=
-          c.traction(c.mesh.corner(t, 0) * p.a + c.mesh.corner(t, 1) * p.b + c.mesh.corner(t, 2) * p.c, n) * p.weight;
-    load.face_traction.set(t, mean);
+    for (int k = 0; k < 3; ++k) load.quadratic_traction.push_back(c.traction(c.mesh.corner(t, k), n));
+    for (int k = 0; k < 3; ++k)
+      load.quadratic_traction.push_back(c.traction((c.mesh.corner(t, k) + c.mesh.corner(t, (k + 1) % 3)) * 0.5, n));
   }
   return load;
 }

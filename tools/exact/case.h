@@ -38,8 +38,11 @@ const std::vector<CaseFamily>& case_families();
 // InputError naming the choices when there is none of that name.
 const CaseFamily& find_family(std::string_view name);
 
-// The load on the case's own mesh: per triangle the mean of the exact traction (seven-point rule), and the body force.
-Load make_load(const ExactCase& c);
+// How the exact traction is handed to the solver: its mean on each triangle (seven-point rule), or the quadratic
+// through its values at corners and edge midpoints.
+enum class TractionDetail { kConstant, kQuadratic };
+// The load on the case's own mesh, with the body force.
+Load make_load(const ExactCase& c, TractionDetail detail);
 
 ExactCase stretched_cube(int n);                          // 12 n^2 triangles; traction e_z at z = +-1/2
 ExactCase hollow_sphere(int f);                           // 40 f^2; r/R = 0.5, practical inner pressure 1 Pa

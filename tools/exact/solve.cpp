@@ -49,12 +49,33 @@ void solve_direct(Solved& s, const Elastic& material, const Load& load, const So
     s.reason = s.body->reason();
     return;
   }
-  const ParticularSolution particular(load.body_force, material);
+  const ParticularSolution particular = s.body->particular(load);
   const ElasticSolution solution = s.body->solve(load, particular);
   s.seconds.solve = clock.lap();
   s.ok = solution.ok, s.reason = solution.reason, s.krylov = solution.krylov;
   if (!s.ok) return;
   s.field = std::make_unique<StressState>(*s.body, *s.recovery, *s.bvh, load, particular, solution);
+  s.seconds.stress = clock.lap();
+}
+
+void solve_indirect(Solved& s, const Elastic& material, const Load& load, const SolveOptions& options) {
+  Clock clock;
+  IndirectOptions o;
+  o.quadrature = options.elastic.quadrature, o.krylov = options.elastic.krylov, o.method = options.indirect_method;
+  o.double_storage = options.elastic.double_storage, o.max_bytes = options.elastic.max_bytes;
+  s.indirect = std::make_unique<IndirectBody>(s.mesh, material, o);
+  s.seconds.assemble = clock.lap();
+  s.unknowns = 3 * s.mesh.triangle_count();
+  if (!s.indirect->ready()) {
+    s.reason = s.indirect->reason();
+    return;
+  }
+  const ParticularSolution particular(load.body_force, material);
+  const IndirectSolution solution = s.indirect->solve(load, particular);
+  s.seconds.solve = clock.lap();
+  s.ok = solution.ok, s.reason = solution.reason, s.krylov = solution.krylov;
+  if (!s.ok) return;
+  s.field = std::make_unique<IndirectState>(*s.indirect, *s.recovery, *s.bvh, load, particular, solution);
   s.seconds.stress = clock.lap();
 }
 
@@ -86,20 +107,24 @@ Solved solve(const SurfaceMesh& mesh, const Elastic& material, const Load& load,
   s.bvh = std::make_unique<TriangleBvh>(s.mesh);
   s.recovery = std::make_unique<SurfaceRecovery>(s.mesh, options.recovery);
   s.seconds.prepare = clock.lap();
-  if (options.formulation != Formulation::kDirect) throw InputError("the indirect formulation is not available here");
-  solve_direct(s, material, load, options);
+  if (options.formulation == Formulation::kDirect)
+    solve_direct(s, material, load, options);
+  else
+    solve_indirect(s, material, load, options);
   s.peak_megabytes = peak_megabytes();
   return s;
 }
 
-SurfaceError surface_error(const ExactCase& c, const Solved& solved) {
+namespace {
+
+SurfaceError corner_errors(const ExactCase& c, const Solved& solved, const std::vector<Sym3>& sigma) {
   const auto& corners = solved.recovery->corners();
   std::vector<int> groups(solved.mesh.vertex_count(), 0);
   for (const auto& corner : corners) ++groups[corner.vertex];
   Statistics all, free;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec3 x = solved.mesh.vertices[corners[i].vertex];
-    const Real e = (max_principal(solved.field->corner_stress()[i]) - max_principal(c.stress(x))) / c.peak;
+    const Real e = (max_principal(sigma[i]) - max_principal(c.stress(x))) / c.peak;
     all.add(e);
     bool loaded = false;
     for (const std::uint32_t f : corners[i].faces)
@@ -107,6 +132,25 @@ SurfaceError surface_error(const ExactCase& c, const Solved& solved) {
     if (groups[corners[i].vertex] == 1 || !loaded) free.add(e);
   }
   return {all.result(), free.result()};
+}
+
+}  // namespace
+
+SurfaceError surface_error(const ExactCase& c, const Solved& solved) {
+  return corner_errors(c, solved, solved.field->corner_stress());
+}
+
+SurfaceError recovery_floor(const ExactCase& c, const Solved& solved) {
+  Vec3Column u(solved.mesh.vertex_count()), traction(solved.recovery->corners().size());
+  for (std::size_t i = 0; i < u.size(); ++i) u.set(i, c.displacement(solved.mesh.vertices[i]));
+  for (std::size_t i = 0; i < traction.size(); ++i) {
+    const auto& corner = solved.recovery->corners()[i];
+    Vec3 sum;
+    for (const std::uint32_t f : corner.faces)
+      sum += c.traction(solved.mesh.vertices[corner.vertex], normalized(solved.mesh.area_normal2(f)));
+    traction.set(i, sum / static_cast<Real>(corner.faces.size()));
+  }
+  return corner_errors(c, solved, solved.recovery->stress(u, traction, c.material));
 }
 
 StressError interior_error(const ExactCase& c, const Solved& solved, Real depth, std::size_t count, Real within) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "engine/stress/indirect_state.h"
 #include "engine/stress/stress.h"
 #include "tools/exact/case.h"
 
@@ -12,8 +13,10 @@ std::string_view to_string(Formulation formulation);
 
 struct SolveOptions {
   Formulation formulation = Formulation::kDirect;
-  ElasticOptions elastic;
+  ElasticOptions elastic;  // its Krylov tolerance and memory limit also hold for the indirect formulation
+  KrylovMethod indirect_method = KrylovMethod::kBicgstab;
   RecoveryOptions recovery;
+  TractionDetail traction = TractionDetail::kQuadratic;
 };
 
 struct StageSeconds {
@@ -31,7 +34,8 @@ struct Solved {
   SurfaceMesh mesh;
   std::unique_ptr<TriangleBvh> bvh;
   std::unique_ptr<SurfaceRecovery> recovery;
-  std::unique_ptr<ElasticBody> body;
+  std::unique_ptr<ElasticBody> body;       // direct
+  std::unique_ptr<IndirectBody> indirect;  // indirect
   std::unique_ptr<StressField> field;
   std::size_t unknowns = 0;
   KrylovResult krylov;
@@ -40,7 +44,7 @@ struct Solved {
 };
 Solved solve(const SurfaceMesh& mesh, const Elastic& material, const Load& load, const SolveOptions& options);
 inline Solved solve(const ExactCase& c, const SolveOptions& options) {
-  return solve(c.mesh, c.material, make_load(c), options);
+  return solve(c.mesh, c.material, make_load(c, options.traction), options);
 }
 
 // Error of the largest principal stress relative to the case's peak; not weighted by area.
@@ -53,6 +57,9 @@ struct SurfaceError {
   StressError free;  // without the corners at sharp edges whose own faces are loaded, as in the design notes
 };
 SurfaceError surface_error(const ExactCase& c, const Solved& solved);
+
+// The same for the recovery alone, fed with the exact displacement and traction: what no solver can fall below.
+SurfaceError recovery_floor(const ExactCase& c, const Solved& solved);
 
 // At `count` points a given depth below the surface, in units of the edge of the equilateral triangle with the area of
 // the face above: random faces (uniform over those with |centroid| <= within), random places on them. Points nearer to
