@@ -1,25 +1,28 @@
 #include "engine/stress/layer_gradient.h"
 
-#include <numbers>
-
-#include "kernels/fundamental/kelvin.h"
-#include "kernels/fundamental/laplace.h"
+#include "kernels/core/symmetric.h"
 #include "kernels/quadrature/gauss.h"
 
 namespace sherd {
 namespace {
 
+// kelvin::gradient summed over the points of a rule, with the sums that do not depend on the rule's point taken out:
+// c [-(3-4nu) q S^T + S q^T + (S.q) I - 3 sum w (e.q) e e^T / l^2], S = sum w e / l^2 = -A,k.
 template <std::size_t N>
 LayerGradient gauss(const PanelFrame& f, const Vec3& x, const Vec3& q, const std::array<TrianglePoint, N>& rule,
                     const Elastic& m) {
-  LayerGradient g;
+  Vec3 sum;
+  Sym3 dyads;
   for (const TrianglePoint& p : rule) {
     const Vec3 r = x - (f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c);
-    const Real w = p.weight * f.area;
-    g.kelvin += kelvin::gradient(r, q * w, m);
-    g.inverse += laplace::single_layer_gradient(r) * (4 * std::numbers::pi * w);
+    const Real inverse2 = 1 / norm2(r), w = p.weight * f.area * inverse2 * std::sqrt(inverse2);
+    const Real d = 3 * w * inverse2 * dot(r, q);
+    sum += r * w;
+    dyads += Sym3{r.x * r.x, r.y * r.y, r.z * r.z, r.y * r.z, r.x * r.z, r.x * r.y} * d;
   }
-  return g;
+  Mat3 g = outer(q, sum) * -(3 - 4 * m.nu) + outer(sum, q) - to_matrix(dyads);
+  for (int i = 0; i < 3; ++i) g[i][i] += dot(sum, q);
+  return {g * m.kelvin(), -sum};
 }
 
 LayerGradient closed_form(const PanelFrame& f, const Vec3& x, const Vec3& q, const Elastic& m, Side side) {
