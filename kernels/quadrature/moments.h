@@ -2,6 +2,9 @@
 // need near the target. Conventions of triangle.h: r = x - y, l = |r|. Monomials in the affine coordinates s, t of the
 // panel (s = 1 at vertex[1], t = 1 at vertex[2], both 0 at vertex[0]), in the order
 //   1; s, t; s^2, s t, t^2; s^3, s^2 t, s t^2, t^3.
+// Within 1e-11 of the largest entry (angles: or 1e-13) at every distance and for triangles down to altitude / length
+// 1e-4: beyond eight altitudes the closed forms would cancel and a Gauss rule replaces them, ten times slower; a fixed
+// rule is cheaper there where less accuracy will do. Gradients are singular on the triangle's edges, as in triangle.h.
 #pragma once
 #include "kernels/core/symmetric.h"
 #include "kernels/quadrature/triangle.h"
