@@ -21,6 +21,10 @@ class DenseOperator final : public LinearOperator {
   // Any other operator on `points` vectors: fill(p, rows) adds the three rows of point p, row major (entry (i, 3 q + j)
   // at rows[i * 3 points + 3 q + j]), to zeros. Called in parallel, once a point.
   DenseOperator(std::size_t points, const std::function<void(std::size_t p, std::span<Real> rows)>& fill);
+  // Zeros, to be filled through rows().
+  explicit DenseOperator(std::size_t points) : size_(3 * points), matrix_(size_ * size_) {}
+  // The three rows of point p, row major.
+  std::span<Scalar> rows(std::size_t p) { return {matrix_.data() + 3 * p * size_, 3 * size_}; }
   std::size_t size() const override { return size_; }
   void apply(std::span<const Real> x, std::span<Real> y) const override;
   void apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const override;

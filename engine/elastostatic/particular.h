@@ -10,7 +10,8 @@ namespace sherd {
 
 class ParticularSolution {
  public:
-  ParticularSolution(const BodyForce& force, const Elastic& material);
+  // `uniform`: a constant stress to add, Pa, with the displacement strain (x - origin).
+  ParticularSolution(const BodyForce& force, const Elastic& material, const Sym3& uniform = {});
   Vec3 displacement(const Vec3& x) const;  // m
   Sym3 stress(const Vec3& x) const;        // Pa
   bool zero() const { return zero_; }
@@ -18,7 +19,8 @@ class ParticularSolution {
  private:
   BodyForce force_;
   Elastic material_;
-  Mat3 symmetric_, antisymmetric_;
+  Mat3 symmetric_, antisymmetric_, strain_;
+  Sym3 uniform_;
   bool zero_;
 };
 

@@ -7,21 +7,31 @@
 namespace sherd {
 namespace {
 
-Vec3 closed_form(const PanelFrame& f, const Vec3& x, const Vec3& t, const Elastic& m) {
-  PanelValues v;
-  integrate_panel(f, x, Side::kAway, v);
-  return (t * ((3 - 4 * m.nu) * v.inverse) + v.dyad * t) * m.kelvin();
+using Density = std::array<Vec3, kQuadraticMonomials>;
+
+// Coefficients of the monomials 1, s, t, s^2, s t, t^2 from the values at corners and midpoints 0-1, 1-2, 2-0.
+Density from_nodes(const std::array<Vec3, 6>& v) {
+  return {v[0],
+          v[3] * 4 - v[0] * 3 - v[1],
+          v[5] * 4 - v[0] * 3 - v[2],
+          (v[0] + v[1] - v[3] * 2) * 2,
+          (v[0] - v[3] + v[4] - v[5]) * 4,
+          (v[0] + v[2] - v[5] * 2) * 2};
+}
+
+Vec3 at(const Density& q, Real s, Real t) {
+  return q[0] + q[1] * s + q[2] * t + q[3] * (s * s) + q[4] * (s * t) + q[5] * (t * t);
 }
 
 // A panel as point forces at the nodes of a rule: position and density times weight times area.
 struct PointForces {
   Vec3Column position, force;
 
-  template <std::size_t N, class Density>
-  void add(const PanelFrame& f, const std::array<TrianglePoint, N>& rule, const Density& density) {
+  template <std::size_t N>
+  void add(const PanelFrame& f, const std::array<TrianglePoint, N>& rule, const Density& q) {
     for (const TrianglePoint& g : rule) {
-      const Vec3 y = f.vertex[0] * g.a + f.vertex[1] * g.b + f.vertex[2] * g.c;
-      position.push_back(y), force.push_back(density(y) * (g.weight * f.area));
+      position.push_back(f.vertex[0] * g.a + f.vertex[1] * g.b + f.vertex[2] * g.c);
+      force.push_back(at(q, g.b, g.c) * (g.weight * f.area));
     }
   }
   Vec3 displacement(std::size_t begin, std::size_t end, const Vec3& x, const Elastic& m) const {
@@ -31,35 +41,37 @@ struct PointForces {
   }
 };
 
-std::array<PanelFrame, 4> split(const PanelFrame& f) {
-  const Vec3 m0 = 0.5 * (f.vertex[0] + f.vertex[1]), m1 = 0.5 * (f.vertex[1] + f.vertex[2]),
-             m2 = 0.5 * (f.vertex[2] + f.vertex[0]);
-  return {make_panel(f.vertex[0], m0, m2), make_panel(m0, f.vertex[1], m1), make_panel(m2, m1, f.vertex[2]),
-          make_panel(m0, m1, m2)};
-}
-
-// The layer with everything that does not depend on the target computed once: a panel is constant sub-panels near the
-// target, seven points farther away, three points far away.
+// The layer with everything that does not depend on the target computed once: closed form near the target, seven points
+// farther away, three points far away.
 struct Layer {
-  std::vector<PanelFrame> near;  // near[first_near[i] ... first_near[i + 1])
-  Vec3Column near_density;
-  std::vector<std::size_t> first_near{0};
+  std::vector<PanelFrame> panel;
+  std::vector<char> constant;
+  std::vector<Density> density;
   PointForces middle, far;  // seven and three a panel
   Vec3Column centroid;
   std::vector<Real> near2, middle2;  // squared reach of each description, m^2
 
-  template <class Density>
-  void add(const PanelFrame& f, bool constant, const Density& density, const QuadratureOptions& o) {
-    if (constant)
-      near.push_back(f), near_density.push_back(density(f.centroid()));
-    else
-      for (const PanelFrame& s : split(f)) near.push_back(s), near_density.push_back(density(s.centroid()));
-    first_near.push_back(near.size());
-    middle.add(f, kGauss7, density), far.add(f, kGauss3, density);
+  void add(const PanelFrame& f, const Density& q, bool is_constant, const QuadratureOptions& o) {
+    panel.push_back(f), density.push_back(q), constant.push_back(is_constant);
+    middle.add(f, kGauss7, q), far.add(f, kGauss3, q);
     centroid.push_back(f.centroid());
-    // Displacements, unlike their gradients, are within 1.4e-5 from two edges on (design notes, section 2).
-    const Real reach = std::max(o.closed_form - 1, 0.0);
+    // Displacements of constants, unlike their gradients, are within 1.4e-5 from two edges on (design notes, section
+    // 2).
+    const Real reach = is_constant ? std::max(o.closed_form - 1, 0.0) : o.closed_form;
     near2.push_back(reach * reach * f.longest2), middle2.push_back(o.gauss7 * o.gauss7 * f.longest2);
+  }
+  Vec3 closed_form(std::size_t i, const Vec3& x, const Elastic& m) const {
+    const Density& q = density[i];
+    if (constant[i]) {
+      PanelValues v;
+      integrate_panel(panel[i], x, Side::kAway, v);
+      return (q[0] * ((3 - 4 * m.nu) * v.inverse) + v.dyad * q[0]) * m.kelvin();
+    }
+    PanelMoments v;
+    integrate_panel_moments(panel[i], x, Side::kAway, v);
+    Vec3 u;
+    for (std::size_t k = 0; k < q.size(); ++k) u += q[k] * ((3 - 4 * m.nu) * v.inverse[k]) + v.dyad[k] * q[k];
+    return u * m.kelvin();
   }
   Vec3 displacement(const Vec3& x, const Elastic& m) const {
     Vec3 u;
@@ -70,8 +82,7 @@ struct Layer {
       else if (d2 > near2[i])
         u += middle.displacement(7 * i, 7 * i + 7, x, m);
       else
-        for (std::size_t s = first_near[i]; s < first_near[i + 1]; ++s)
-          u += closed_form(near[s], x, near_density[s], m);
+        u += closed_form(i, x, m);
     }
     return u;
   }
@@ -79,24 +90,33 @@ struct Layer {
 
 }  // namespace
 
+Density traction_polynomial(const Boundary& b, const Load& load, const ParticularSolution& particular, std::size_t t) {
+  std::array<Vec3, 6> value{};
+  const PanelFrame& f = b.panels[t];
+  if (!load.quadratic_traction.empty())
+    for (std::size_t k = 0; k < 6; ++k) value[k] = load.quadratic_traction[6 * t + k];
+  if (!particular.zero())
+    for (std::size_t k = 0; k < 3; ++k) {
+      value[k] -= particular.stress(f.vertex[k]) * f.normal;
+      value[3 + k] -= particular.stress((f.vertex[k] + f.vertex[(k + 1) % 3]) * 0.5) * f.normal;
+    }
+  Density q = from_nodes(value);
+  if (!load.face_traction.empty()) q[0] += load.face_traction[t];
+  return q;
+}
+
 Vec3Column load_potential(const Boundary& b, const Load& load, const ParticularSolution& particular, const Elastic& m,
-                          const QuadratureOptions& options) {
+                          const QuadratureOptions& options, const Vec3Column& points) {
   Layer layer;
   for (std::size_t i = 0; i < load.panels.size(); ++i) {
     const auto& c = load.panels.corners[i];
-    layer.add(
-        make_panel(c[0], c[1], c[2]), true, [&](const Vec3&) { return load.panels.traction[i]; }, options);
+    layer.add(make_panel(c[0], c[1], c[2]), {load.panels.traction[i]}, true, options);
   }
-  if (!particular.zero() || !load.face_traction.empty())
-    for (std::size_t t = 0; t < b.panels.size(); ++t) {
-      const Vec3 constant = load.face_traction.empty() ? Vec3{} : load.face_traction[t];
-      const Vec3& n = b.panels[t].normal;
-      const auto density = [&](const Vec3& y) { return constant - particular.stress(y) * n; };
-      layer.add(b.panels[t], particular.zero(), density, options);
-    }
-  Vec3Column potential(b.mesh.vertex_count());
-  parallel_for(b.mesh.vertex_count(), 16,
-               [&](std::size_t p) { potential.set(p, layer.displacement(b.mesh.vertices[p], m)); });
+  if (!particular.zero() || !load.face_traction.empty() || !load.quadratic_traction.empty())
+    for (std::size_t t = 0; t < b.panels.size(); ++t)
+      layer.add(b.panels[t], traction_polynomial(b, load, particular, t), false, options);
+  Vec3Column potential(points.size());
+  parallel_for(points.size(), 16, [&](std::size_t p) { potential.set(p, layer.displacement(points[p], m)); });
   return potential;
 }
 

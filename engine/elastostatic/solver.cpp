@@ -2,14 +2,32 @@
 
 #include <fmt/format.h>
 
-#include "engine/elastostatic/dense_operator.h"
+#include "engine/elastostatic/direct_assembly.h"
+#include "engine/mesh/thickness.h"
+#include "kernels/quadrature/gauss.h"
 
 namespace sherd {
+namespace {
+
+// Vertices on walls that the mesh does not resolve for collocation.
+std::vector<bool> galerkin_vertices(const SurfaceMesh& mesh, const ElasticOptions& o) {
+  std::vector<bool> out(mesh.vertex_count(), o.testing == TestingRule::kGalerkin);
+  if (o.testing != TestingRule::kAuto || o.reconstruction.element == Element::kLinear) return out;
+  const std::vector<Real> thickness = wall_thickness(mesh).face, edge = local_edge_length(mesh);
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    if (edge[t] > o.thin_ratio * thickness[t])
+      for (const std::uint32_t v : mesh.triangles[t]) out[v] = true;
+  return out;
+}
+
+}  // namespace
 
 ElasticBody::ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const ElasticOptions& options)
     : material_(material),
       options_(options),
       boundary_(mesh, options.quadrature),
+      reconstruction_(boundary_.mesh, material.nu, options.reconstruction),
+      testing_(boundary_, reconstruction_, galerkin_vertices(boundary_.mesh, options)),
       modes_(boundary_.mesh.vertices, boundary_.vertex_area) {
   const std::size_t n = 3 * mesh.vertex_count(),
                     bytes = n * n * (options.double_storage ? sizeof(double) : sizeof(float));
@@ -27,7 +45,8 @@ ElasticBody::ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const
 
 template <class Scalar>
 void ElasticBody::build() {
-  auto dense = std::make_unique<DenseOperator<Scalar>>(boundary_, material_.nu);
+  auto dense = std::make_unique<DenseOperator<Scalar>>(boundary_.mesh.vertex_count());
+  assemble_direct(OperatorRows(boundary_, reconstruction_, material_.nu), testing_, *dense);
   inverse_blocks_.resize(boundary_.mesh.vertex_count());
   for (std::size_t p = 0; p < inverse_blocks_.size(); ++p) {
     const Mat3 block = dense->diagonal_block(p);
@@ -39,6 +58,30 @@ void ElasticBody::build() {
   preconditioner_ = std::make_unique<Deflation>(*completed_, boundary_, inverse_blocks_, options_.deflation);
 }
 
+// Mean stress = integral of x t^T over the boundary / volume, for tractions in balance (divergence theorem).
+ParticularSolution ElasticBody::particular(const Load& load) const {
+  const ParticularSolution force(load.body_force, material_);
+  const Vec3 centre = bounding_box(boundary_.mesh).centre();
+  Mat3 moment;
+  for (std::size_t t = 0; t < boundary_.panels.size(); ++t) {
+    const PanelFrame& f = boundary_.panels[t];
+    const auto q = traction_polynomial(boundary_, load, force, t);
+    for (const TrianglePoint& g : kGauss7) {
+      const auto m = cubic::monomials(g.b, g.c);
+      Vec3 traction;
+      for (std::size_t k = 0; k < q.size(); ++k) traction += q[k] * m[k];
+      moment +=
+          outer(f.vertex[0] * g.a + f.vertex[1] * g.b + f.vertex[2] * g.c - centre, traction) * (g.weight * f.area);
+    }
+  }
+  for (std::size_t i = 0; i < load.panels.size(); ++i) {
+    const auto& c = load.panels.corners[i];
+    const PanelFrame f = make_panel(c[0], c[1], c[2]);
+    moment += outer(f.centroid() - centre, load.panels.traction[i] * f.area);
+  }
+  return {load.body_force, material_, symmetric_part(moment) * (1 / signed_volume(boundary_.mesh))};
+}
+
 ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& particular) const {
   ElasticSolution s;
   if (!ready()) {
@@ -46,7 +89,8 @@ ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& p
     return s;
   }
   const std::size_t n = boundary_.mesh.vertex_count();
-  const Vec3Column rhs = load_potential(boundary_, load, particular, material_, options_.quadrature);
+  const Vec3Column rhs =
+      testing_.apply(load_potential(boundary_, load, particular, material_, options_.quadrature, testing_.points()));
   std::vector<Real> b(3 * n), x(3 * n, 0);
   Real size2 = 0;
   for (std::size_t i = 0; i < n; ++i)

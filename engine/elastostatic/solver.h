@@ -7,10 +7,18 @@
 #include "engine/elastostatic/krylov.h"
 #include "engine/elastostatic/rigid_modes.h"
 #include "engine/elastostatic/single_layer.h"
+#include "engine/elastostatic/testing.h"
 
 namespace sherd {
 
+// Which vertices get Petrov-Galerkin rows (testing.h): none, those where elements are longer than `thin_ratio` times
+// the wall is thick, or all.
+enum class TestingRule { kCollocation, kAuto, kGalerkin };
+
 struct ElasticOptions {
+  ReconstructionOptions reconstruction;
+  TestingRule testing = TestingRule::kAuto;
+  Real thin_ratio = 0.6;
   QuadratureOptions quadrature;
   KrylovOptions krylov;
   DeflationOptions deflation;
@@ -34,6 +42,9 @@ class ElasticBody {
   ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const ElasticOptions& options);
   bool ready() const { return operator_ != nullptr; }
   const std::string& reason() const { return reason_; }
+  // What the solver subtracts: the body force's polynomial and the mean stress of what remains, so that uniformly
+  // stressed bodies are exact on any mesh. Pass it to solve() and to StressState.
+  ParticularSolution particular(const Load& load) const;
   // Deterministic; not converged or not finite is ok = false with the reason.
   ElasticSolution solve(const Load& load, const ParticularSolution& particular) const;
 
@@ -41,6 +52,8 @@ class ElasticBody {
   const Elastic& material() const { return material_; }
   const ElasticOptions& options() const { return options_; }
   const LinearOperator& system() const { return *operator_; }  // without completion
+  const Reconstruction& reconstruction() const { return reconstruction_; }
+  const Testing& testing() const { return testing_; }
 
  private:
   template <class Scalar>
@@ -49,6 +62,8 @@ class ElasticBody {
   Elastic material_;
   ElasticOptions options_;
   Boundary boundary_;
+  Reconstruction reconstruction_;
+  Testing testing_;
   RigidModes modes_;
   std::unique_ptr<LinearOperator> operator_;
   std::unique_ptr<CompletedOperator> completed_;

@@ -36,12 +36,18 @@ struct Load {
   TractionPanels panels;
   std::vector<ContactPatch> patches;
   Vec3Column face_traction;  // constant traction per triangle of the mesh, Pa; empty: none
+  // Traction that varies over each triangle, in addition: six values a triangle, at its corners and at the midpoints of
+  // its edges 0-1, 1-2, 2-0, quadratic between them, Pa; empty: none.
+  Vec3Column quadratic_traction;
   BodyForce body_force;
   Vec3 net_force;   // of panels and body force together; zero to rounding after inertia relief, N
   Vec3 net_moment;  // about the centre of mass, N m
 };
 
-// Traction of the patches and the face tractions at a point of face `face`, Pa.
-Vec3 traction_at(const Load& load, const Vec3& x, std::uint32_t face);
+// The six quadratic shape functions at the barycentric coordinates (1 - s - t, s, t), in the order of
+// Load::quadratic_traction.
+std::array<Real, 6> quadratic_shape(Real s, Real t);
+// Traction of the patches, the face and the quadratic tractions at the point x of face `face` of the mesh, Pa.
+Vec3 traction_at(const Load& load, const SurfaceMesh& mesh, const Vec3& x, std::uint32_t face);
 
 }  // namespace sherd

@@ -85,10 +85,21 @@ void append_panels(const SurfaceMesh& mesh, const ContactPatch& patch, TractionP
     });
 }
 
-Vec3 traction_at(const Load& load, const Vec3& x, std::uint32_t face) {
+std::array<Real, 6> quadratic_shape(Real s, Real t) {
+  const Real r = 1 - s - t;
+  return {r * (2 * r - 1), s * (2 * s - 1), t * (2 * t - 1), 4 * r * s, 4 * s * t, 4 * t * r};
+}
+
+Vec3 traction_at(const Load& load, const SurfaceMesh& mesh, const Vec3& x, std::uint32_t face) {
   Vec3 t = load.face_traction.empty() ? Vec3{} : load.face_traction[face];
   for (const ContactPatch& p : load.patches)
     if (std::binary_search(p.faces.begin(), p.faces.end(), face)) t += p.force * (weight(p, x) / p.normalisation);
+  if (load.quadratic_traction.empty()) return t;
+  const Vec3 a = mesh.corner(face, 0), e1 = mesh.corner(face, 1) - a, e2 = mesh.corner(face, 2) - a, d = x - a;
+  const Real g11 = dot(e1, e1), g12 = dot(e1, e2), g22 = dot(e2, e2), det = g11 * g22 - g12 * g12;
+  const Real d1 = dot(d, e1), d2 = dot(d, e2);
+  const std::array<Real, 6> shape = quadratic_shape((g22 * d1 - g12 * d2) / det, (g11 * d2 - g12 * d1) / det);
+  for (std::size_t k = 0; k < shape.size(); ++k) t += load.quadratic_traction[6 * face + k] * shape[k];
   return t;
 }
 

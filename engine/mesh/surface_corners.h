@@ -18,8 +18,8 @@ struct SurfaceCorners {
   std::uint32_t at(std::size_t t, std::size_t k) const { return of[3 * t + k]; }
 };
 
-// feature_angle in degrees: two faces whose normals differ by more are separated by a crease. 0 makes every edge between
-// faces that are not coplanar (to 0.01 degrees) a crease: the exact polyhedron.
+// feature_angle in degrees: two faces whose normals differ by more are separated by a crease. 0 makes every edge
+// between faces that are not coplanar (to 0.01 degrees) a crease: the exact polyhedron.
 SurfaceCorners make_surface_corners(const SurfaceMesh& mesh, Real feature_angle);
 
 }  // namespace sherd

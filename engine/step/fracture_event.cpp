@@ -5,7 +5,7 @@
 #include "engine/fracture/initiate.h"
 #include "engine/fracture/net_section.h"
 #include "engine/fracture/thicken.h"
-#include "engine/mesh/remesh.h"
+#include "engine/mesh/sizing.h"
 #include "engine/mesh/validate.h"
 #include "engine/step/stopwatch.h"
 
@@ -230,11 +230,16 @@ void Event::split_by_partials() {
 
 // The cut piece made fit for the next solve, or nothing: near the cut alone; all of it when slivers remain; slivers
 // alone when the piece is so small against the edge that remeshing would change its shape.
-std::shared_ptr<const SurfaceMesh> remeshed(const SurfaceMesh& piece, Real edge_length) {
+std::shared_ptr<const SurfaceMesh> remeshed(const SurfaceMesh& piece, const RootScale& root) {
   constexpr Real kMaxVolumeChange = 0.005;
   RemeshOptions local, whole, slivers;
-  local.edge_length = whole.edge_length = slivers.edge_length = edge_length;
-  local.locked = lock_good_regions(piece, edge_length, 2 * edge_length);
+  local.edge_length = root.edge_length;
+  if (root.edge_per_thickness > 0)
+    local.size = sizing_field(piece, wall_thickness(piece).vertex,
+                              {.edge_length = root.edge_length, .edge_per_thickness = root.edge_per_thickness});
+  whole = slivers = local;
+  local.locked = local.size.empty() ? lock_good_regions(piece, root.edge_length, 2 * root.edge_length)
+                                    : lock_good_regions(piece, local.size, 2 * root.edge_length);
   slivers.iterations = 0;
   std::shared_ptr<const SurfaceMesh> best;
   std::size_t least = 0;
@@ -254,7 +259,7 @@ FragmentShape Event::finished(Piece& piece) {
   shape.clean = piece.mesh;
   if (piece.was_cut) {
     const Stopwatch watch(result_.seconds.remesh);
-    if (auto mesh = remeshed(*piece.mesh, solid_.root().edge_length))
+    if (auto mesh = remeshed(*piece.mesh, solid_.root()))
       shape.clean = std::move(mesh);
     else
       ++result_.remesh_refused;
@@ -297,7 +302,7 @@ FractureResult fracture_solid(Solid& solid, const MassProperties& clean_mass, co
   }
   const Load load = make_load(solid.mesh(), clean_mass, contacts, solid.twins(), solid.bvh(), omega);
   result.panels = load.panels.size();
-  const ParticularSolution particular(load.body_force, material);
+  const ParticularSolution particular = elastic->particular(load);
   ElasticSolution solution;
   {
     const Stopwatch watch(result.seconds.solve);

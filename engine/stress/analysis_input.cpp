@@ -103,8 +103,6 @@ void require_material(const Elastic& m, const std::string& name) {
 }
 
 void require_options(const AnalysisOptions& o) {
-  if (o.formulation == Formulation::kIndirect)
-    refuse(o.name, "the indirect formulation is not part of this build; use the direct one");
   if (o.refine < 0 || o.refine > kDeepestRefine)
     refuse(o.name, fmt::format("refine {} is not allowed; 0 to {}", o.refine, kDeepestRefine));
   if (!(o.feature_angle >= 0 && o.feature_angle <= 180))

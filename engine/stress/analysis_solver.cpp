@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "engine/stress/indirect_state.h"
 #include "engine/stress/stress.h"
 #include "kernels/core/error.h"
 
@@ -17,20 +18,35 @@ double now() {
 constexpr Real kResidualShare = 0.01;
 constexpr Real kLeastResidual = 1e-12;  // what double precision reaches
 
-class DirectSolver final : public SolidSolver {
+bool all_finite(const Vec3Column& u) {
+  for (std::size_t i = 0; i < u.size(); ++i)
+    if (!is_finite(u[i])) return false;
+  return !u.empty();
+}
+
+ParticularSolution particular_of(const ElasticBody& body, const Load& load) {
+  return body.particular(load);
+}
+ParticularSolution particular_of(const IndirectBody& body, const Load& load) {
+  return {load.body_force, body.material()};
+}
+
+// Body: ElasticBody or IndirectBody, State its stress. `values`: what the solution consists of.
+template <class Body, class State, class Options, auto kValues>
+class BodySolver final : public SolidSolver {
  public:
-  DirectSolver(const SurfaceMesh& mesh, const Elastic& material, const SolverOptions& options)
-      : options_(options),
+  BodySolver(const SurfaceMesh& mesh, const Elastic& material, const SolverOptions& options, const Options& own)
+      : tolerance_(options.tolerance),
         bvh_(mesh),
         recovery_(mesh, {options.feature_angle, {}}),
-        body_(mesh, material, elastic_options(options)) {
-    if (!body_.ready()) throw InputError(body_.reason());
+        body_(mesh, material, own) {
+    SHERD_CHECK(body_.ready(), "{}", body_.reason());  // Analysis has made sure that it fits
   }
 
   void solve(const Load& load, SolidReport& report, StageSeconds& seconds) override {
     state_.reset();
-    const ParticularSolution particular(load.body_force, body_.material());
-    ElasticSolution solution;
+    const ParticularSolution particular = particular_of(body_, load);
+    decltype(body_.solve(load, particular)) solution;
     {
       const StageTimer timer(seconds.solve);
       solution = body_.solve(load, particular);
@@ -38,32 +54,30 @@ class DirectSolver final : public SolidSolver {
     report.iterations = solution.krylov.iterations, report.products = solution.krylov.products;
     report.residual = solution.krylov.residual;
     report.converged = solution.ok, report.reason = solution.reason;
-    report.solved = solution.ok || (solution.krylov.residual <= options_.tolerance && finite(solution.displacement));
+    report.solved = solution.ok || (solution.krylov.residual <= tolerance_ && all_finite(solution.*kValues));
     if (!report.solved) return;
     const StageTimer timer(seconds.recover);
-    state_ = std::make_unique<StressState>(body_, recovery_, bvh_, load, particular, solution);
+    state_ = std::make_unique<State>(body_, recovery_, bvh_, load, particular, solution);
   }
   const StressField* field() const override { return state_.get(); }
 
  private:
-  static ElasticOptions elastic_options(const SolverOptions& o) {
-    ElasticOptions e;
-    e.krylov.tolerance = std::max(kLeastResidual, kResidualShare * o.tolerance);
-    e.double_storage = o.double_storage, e.max_bytes = o.max_bytes;
-    return e;
-  }
-  static bool finite(const Vec3Column& u) {
-    for (std::size_t i = 0; i < u.size(); ++i)
-      if (!is_finite(u[i])) return false;
-    return !u.empty();
-  }
-
-  SolverOptions options_;
+  Real tolerance_;
   TriangleBvh bvh_;
   SurfaceRecovery recovery_;
-  ElasticBody body_;
-  std::unique_ptr<StressState> state_;
+  Body body_;
+  std::unique_ptr<State> state_;
 };
+using DirectSolver = BodySolver<ElasticBody, StressState, ElasticOptions, &ElasticSolution::displacement>;
+using IndirectSolver = BodySolver<IndirectBody, IndirectState, IndirectOptions, &IndirectSolution::density>;
+
+template <class Options>
+Options body_options(const SolverOptions& o) {
+  Options own;
+  own.krylov.tolerance = std::max(kLeastResidual, kResidualShare * o.tolerance);
+  own.double_storage = o.double_storage, own.max_bytes = o.max_bytes;
+  return own;
+}
 
 }  // namespace
 
@@ -78,8 +92,13 @@ std::size_t unknowns_of(Formulation formulation, std::size_t vertices, std::size
 
 std::unique_ptr<SolidSolver> make_solver(const SurfaceMesh& mesh, const Elastic& material,
                                          const SolverOptions& options) {
-  SHERD_CHECK(options.formulation == Formulation::kDirect, "refused by require_options()");
-  return std::make_unique<DirectSolver>(mesh, material, options);
+  if (options.formulation == Formulation::kIndirect) {
+    IndirectOptions own = body_options<IndirectOptions>(options);
+    own.body_force = BodyForcePotential::kNewton;  // as in the paper
+    return std::make_unique<IndirectSolver>(mesh, material, options, own);
+  }
+  const ElasticOptions own = body_options<ElasticOptions>(options);
+  return std::make_unique<DirectSolver>(mesh, material, options, own);
 }
 
 }  // namespace sherd

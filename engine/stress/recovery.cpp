@@ -23,10 +23,21 @@ SurfaceRecovery::SurfaceRecovery(const SurfaceMesh& mesh, const RecoveryOptions&
   });
 }
 
+Sym3 surface_stress(const Mat3& g, const Vec3& n, const Vec3& t, const Elastic& m) {
+  const Vec3 e1 = any_perpendicular(n), e2 = cross(n, e1);
+  const Real e11 = dot(e1, g * e1), e22 = dot(e2, g * e2), e12 = 0.5 * (dot(e1, g * e2) + dot(e2, g * e1));
+  const Real young = 2 * m.mu * (1 + m.nu), plane = young / (1 - m.nu * m.nu), tn = dot(t, n),
+             pressure = m.nu / (1 - m.nu) * tn;
+  const Real s11 = plane * (e11 + m.nu * e22) + pressure, s22 = plane * (e22 + m.nu * e11) + pressure,
+             s12 = 2 * m.mu * e12;
+  return symmetric_part(outer(e1, e1) * s11 + outer(e2, e2) * s22 + (outer(e1, e2) + outer(e2, e1)) * s12 +
+                        outer(n, n) * tn + (outer(e1, n) + outer(n, e1)) * dot(t, e1) +
+                        (outer(e2, n) + outer(n, e2)) * dot(t, e2));
+}
+
 std::vector<Sym3> SurfaceRecovery::stress(const Vec3Column& displacement, const Vec3Column& traction,
                                           const Elastic& m) const {
   std::vector<Sym3> out(corners_.size());
-  const Real young = 2 * m.mu * (1 + m.nu);
   parallel_for(corners_.size(), 256, [&](std::size_t i) {
     const StressCorner& c = corners_[i];
     Vec3 dx, dy;
@@ -36,15 +47,7 @@ std::vector<Sym3> SurfaceRecovery::stress(const Vec3Column& displacement, const 
     }
     // Surface gradient G with G tangent_x = dx, G tangent_y = dy, G normal = 0.
     const Mat3 g = Mat3::from_columns(dx, dy, Vec3{}) * inverse(Mat3::from_columns(c.tangent_x, c.tangent_y, c.normal));
-    const Vec3 n = c.normal, e1 = any_perpendicular(n), e2 = cross(n, e1), t = traction[i];
-    const Real e11 = dot(e1, g * e1), e22 = dot(e2, g * e2), e12 = 0.5 * (dot(e1, g * e2) + dot(e2, g * e1));
-    const Real plane = young / (1 - m.nu * m.nu), tn = dot(t, n), pressure = m.nu / (1 - m.nu) * tn;
-    const Real s11 = plane * (e11 + m.nu * e22) + pressure, s22 = plane * (e22 + m.nu * e11) + pressure,
-               s12 = 2 * m.mu * e12;
-    const Mat3 s = outer(e1, e1) * s11 + outer(e2, e2) * s22 + (outer(e1, e2) + outer(e2, e1)) * s12 +
-                   outer(n, n) * tn + (outer(e1, n) + outer(n, e1)) * dot(t, e1) +
-                   (outer(e2, n) + outer(n, e2)) * dot(t, e2);
-    out[i] = symmetric_part(s);
+    out[i] = surface_stress(g, c.normal, traction[i], m);
   });
   return out;
 }

@@ -21,6 +21,9 @@ struct StressCorner : SurfaceCorner {
   std::vector<Real> row_x, row_y;
 };
 
+// Stress where the surface gradient g[i][k] = u_i,k (g n = 0) and the traction t on the outward normal n are known, Pa.
+Sym3 surface_stress(const Mat3& g, const Vec3& n, const Vec3& t, const Elastic& material);
+
 class SurfaceRecovery {
  public:
   SurfaceRecovery(const SurfaceMesh& mesh, const RecoveryOptions& options);

@@ -19,30 +19,27 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
       load_traction_(load.panels.traction) {
   const Boundary& b = body.boundary();
   const std::size_t triangles = b.panels.size();
-  density_.resize(triangles), guenter_.resize(triangles), gradient_.resize(triangles);
+  Vec3Column nodes;
+  body.reconstruction().apply(solution.displacement, nodes);
+  elements_.resize(triangles);
   parallel_for(triangles, 256, [&](std::size_t t) {
-    const PanelFrame& f = b.panels[t];
-    Mat3 g;  // g[i][k] = d u_i / d x_k
-    for (int a = 0; a < 3; ++a)
-      g += outer(solution.displacement[b.mesh.triangles[t][static_cast<std::size_t>(a)]], f.shape_gradient(a));
-    const Vec3 mu = transpose(g) * f.normal - f.normal * trace(g);  // (M u)_i = n_j d_i u_j - n_i d_j u_j
-    Vec3 traction = load.face_traction.empty() ? Vec3{} : load.face_traction[t];
-    if (!particular_.zero())
-      for (const TrianglePoint& p : kGauss3)
-        traction -= particular_.stress(f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c) * f.normal * p.weight;
-    gradient_[t] = g;
-    guenter_.set(t, mu);
-    density_.set(t, traction - mu * (2 * body.material().mu));
+    std::array<Vec3, cubic::kNodes> u;
+    for (std::size_t a = 0; a < u.size(); ++a) u[a] = nodes[body.reconstruction().nodes(t)[a]];
+    elements_[t] = ElementField(b.panels[t], u, traction_polynomial(b, load, particular_, t), body.material());
   });
+  patch_load_.patches = load.patches;
   for (const auto& c : load.panels.corners) load_panels_.push_back(make_panel(c[0], c[1], c[2]));
   for (std::size_t v = 0; v < displacement_.size(); ++v)
     displacement_.add(v, particular_.displacement(b.mesh.vertices[v]));
   Vec3Column traction(recovery.corners().size());
   for (std::size_t c = 0; c < traction.size(); ++c) {
     const SurfaceCorner& corner = recovery.corners()[c];
-    Vec3 sum;
-    for (const std::uint32_t f : corner.faces) sum += traction_at(load, b.mesh, b.mesh.vertices[corner.vertex], f);
-    traction.set(c, sum / static_cast<Real>(corner.faces.size()));
+    Vec3 force, area;  // of a uniformly stressed polyhedron this is exact
+    for (const std::uint32_t f : corner.faces) {
+      const Vec3 normal2 = b.mesh.area_normal2(f);
+      force += traction_at(load, b.mesh, b.mesh.vertices[corner.vertex], f) * norm(normal2), area += normal2;
+    }
+    traction.set(c, force / norm(area));
   }
   corner_stress_ = recovery.stress(displacement_, traction, body.material());
   worst_corner_.assign(b.mesh.vertex_count(), kNone);
@@ -59,20 +56,21 @@ Sym3 StressState::interior(const Vec3& x) const {
   const Elastic& m = body_.material();
   const QuadratureOptions& o = body_.options().quadrature;
   Mat3 g;
-  for (std::size_t t = 0; t < b.panels.size(); ++t) {
-    const PanelFrame& f = b.panels[t];
-    const LayerGradient l = layer_gradient(f, x, density_[t], m, o);
-    const Mat3& s = gradient_[t];
-    g += l.kelvin + (outer(guenter_[t], l.inverse) + s * dot(l.inverse, f.normal) - outer(s * l.inverse, f.normal)) *
-                        (1 / (4 * std::numbers::pi));
-  }
+  for (std::size_t t = 0; t < b.panels.size(); ++t)
+    g += elements_[t].gradient_at(b.panels[t], x, m, std::sqrt(b.near2[t]), std::sqrt(b.middle2[t]));
   for (std::size_t i = 0; i < load_panels_.size(); ++i)
     g += layer_gradient(load_panels_[i], x, load_traction_[i], m, o).kelvin;
   return kelvin::hooke(g, m) + particular_.stress(x);
 }
 
 Sym3 StressState::on_face(std::uint32_t face, const Vec3& x) const {
-  return interpolate_corners(body_.boundary().panels[face], recovery_, corner_stress_, face, x);
+  const Boundary& b = body_.boundary();
+  const PanelFrame& f = b.panels[face];
+  const Real s = std::clamp(dot(f.shape_gradient(1), x - f.vertex[0]), 0.0, 1.0),
+             t = std::clamp(dot(f.shape_gradient(2), x - f.vertex[0]), 0.0, 1.0 - s);
+  const Vec3 traction = elements_[face].traction_at(s, t) + traction_at(patch_load_, b.mesh, x, face);
+  return surface_stress(elements_[face].surface_gradient(f, s, t), f.normal, traction, body_.material()) +
+         particular_.stress(x);
 }
 
 void StressState::evaluate(const Vec3Column& points, std::vector<Sym3>& out) const {

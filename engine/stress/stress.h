@@ -3,6 +3,7 @@
 #pragma once
 #include "engine/elastostatic/solver.h"
 #include "engine/mesh/bvh.h"
+#include "engine/stress/element_field.h"
 #include "engine/stress/stress_field.h"
 
 namespace sherd {
@@ -25,7 +26,8 @@ class StressState final : public StressField {
   void evaluate(const Vec3Column& points, std::vector<Sym3>& out) const override;
   // Somigliana's gradient alone: any point inside, no blending; outside it gives the particular solution alone.
   Sym3 interior(const Vec3& x) const;
-  // Linear interpolation of the corner stresses on a face.
+  // From the cubic element's gradient and the known traction: the stress of the flat face, not smoothed over its
+  // neighbours.
   Sym3 on_face(std::uint32_t face, const Vec3& x) const override;
 
  private:
@@ -36,9 +38,8 @@ class StressState final : public StressField {
   Vec3Column displacement_;
   std::vector<Sym3> corner_stress_;
   std::vector<std::uint32_t> worst_corner_;
-  // Per triangle: density of the Kelvin layer, M u, surface gradient of the homogeneous displacement.
-  Vec3Column density_, guenter_;
-  std::vector<Mat3> gradient_;
+  std::vector<ElementField> elements_;  // per triangle
+  Load patch_load_;                     // the contact patches alone
   std::vector<PanelFrame> load_panels_;
   Vec3Column load_traction_;
 };

@@ -14,6 +14,15 @@ struct TrianglePoint {
 // Exact for degree 2.
 inline constexpr std::array<TrianglePoint, 3> kGauss3 = {
     {{2.0 / 3, 1.0 / 6, 1.0 / 6, 1.0 / 3}, {1.0 / 6, 2.0 / 3, 1.0 / 6, 1.0 / 3}, {1.0 / 6, 1.0 / 6, 2.0 / 3, 1.0 / 3}}};
+// Exact for degree 4.
+inline constexpr Real kSixA = 0.44594849091596488632, kSixB = 0.09157621350977074346;
+inline constexpr Real kSixWa = 0.22338158967801146570, kSixWb = 0.10995174365532186764;
+inline constexpr std::array<TrianglePoint, 6> kGauss6 = {{{1 - 2 * kSixA, kSixA, kSixA, kSixWa},
+                                                          {kSixA, 1 - 2 * kSixA, kSixA, kSixWa},
+                                                          {kSixA, kSixA, 1 - 2 * kSixA, kSixWa},
+                                                          {1 - 2 * kSixB, kSixB, kSixB, kSixWb},
+                                                          {kSixB, 1 - 2 * kSixB, kSixB, kSixWb},
+                                                          {kSixB, kSixB, 1 - 2 * kSixB, kSixWb}}};
 // Exact for degree 5 (Radon).
 inline constexpr Real kRadonA = 0.47014206410511508977, kRadonB = 0.10128650732345633880;
 inline constexpr Real kRadonWa = 0.13239415278850618074, kRadonWb = 0.12593918054482715260;

@@ -44,7 +44,7 @@ TEST(ContactPatch, PressureDoesNotDependOnTheMesh) {
     const Vec3 top{0.013, bounding_box(box.mesh).high.y, -0.007};
     Load load;
     load.patches.push_back(make_patch(box.mesh, box.twins, box.bvh, top, a, {0, -1000, 0}));
-    const Vec3 t = traction_at(load, top, box.bvh.closest(top).face);
+    const Vec3 t = traction_at(load, box.mesh, top, box.bvh.closest(top).face);
     EXPECT_NEAR(t.y, -exact,
                 0.02 * exact);  // panels of a third of the radius: centroid rule errs by about 1 % at the rim
   }

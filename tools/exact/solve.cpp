@@ -173,8 +173,10 @@ StressError interior_error(const ExactCase& c, const Solved& solved, Real depth,
   std::vector<Sym3> sigma;
   solved.field->evaluate(points, sigma);
   Statistics statistics;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    statistics.add((max_principal(sigma[i]) - max_principal(c.stress(points[i]))) / c.peak);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 x = c.nearest_inside ? c.nearest_inside(points[i]) : points[i];
+    statistics.add((max_principal(sigma[i]) - max_principal(c.stress(x))) / c.peak);
+  }
   return statistics.result();
 }
 

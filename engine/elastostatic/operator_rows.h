@@ -1,0 +1,41 @@
+// Rows of the direct formulation's operator over the vertices, for any point of the surface:
+//   r(x) = D[u - u(x)] + 2 mu V_E[M u] - V_L[M u]
+// with u the reconstructed displacement (see dense_operator.h for the letters). Near panels in closed form, far ones by
+// Gauss rules whose weights are exact for the product of the shape functions with a linear kernel.
+#pragma once
+#include <memory>
+#include <span>
+
+#include "engine/elastostatic/boundary.h"
+#include "engine/elastostatic/reconstruction.h"
+
+namespace sherd {
+
+// Targets are evaluated eight at a time, one a SIMD lane.
+inline constexpr std::size_t kLanes = 8;
+using Lane [[gnu::vector_size(64)]] = Real;
+
+struct TargetGroup {
+  std::size_t count = 0;  // lanes in use; the others repeat the first
+  std::array<Vec3, kLanes> x;
+  std::array<std::uint32_t, kLanes> vertex;  // the vertex each target is, or kNone
+  std::uint32_t panel = kNone;               // the panel all targets lie in, when they are not vertices
+  std::array<Real, kLanes> s{}, t{};         // their coordinates in it (moments.h)
+};
+
+class OperatorRows {
+ public:
+  OperatorRows(const Boundary& boundary, const Reconstruction& reconstruction, Real nu);
+  ~OperatorRows();
+
+  struct Workspace;
+  std::shared_ptr<Workspace> make_workspace() const;  // one per thread at a time
+  // rows: 3 kLanes rows of 3 nv entries, row major; row 3 k + i is component i at target k. Overwritten.
+  void evaluate(const TargetGroup& targets, Workspace& workspace, std::span<Real> rows) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sherd

@@ -1,0 +1,175 @@
+#include "engine/elastostatic/reconstruction.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "kernels/core/parallel.h"
+
+namespace sherd {
+namespace {
+
+// w = G n from g1 = G (a + slope_x n), g2 = G (b + slope_y n) and Hooke's sigma n = 0:
+//   (n - k slope_x a - k slope_y b) w = -k (a g1 + b g2),  (a - slope_x n) w = -n g1,  (b - slope_y n) w = -n g2
+// with k = nu / (1 - nu). The rotation part alone keeps rigid motions exact (design notes, step 4); the rest is the
+// thinning by Poisson's ratio.
+Reconstruction::Frame free_surface_frame(const SurfaceFit& f, Real nu) {
+  const Real k = nu / (1 - nu);
+  const Vec3 a = f.a(), b = f.b(), n = f.normal();
+  const Mat3 c = inverse(transpose(
+      Mat3::from_columns(n - a * (k * f.slope_x()) - b * (k * f.slope_y()), a - n * f.slope_x(), b - n * f.slope_y())));
+  const Vec3 cn = c * Vec3{1, 0, 0}, ca = c * Vec3{0, 1, 0}, cb = c * Vec3{0, 0, 1};
+  return {outer(cn, a) * k + outer(ca, n), outer(cn, b) * k + outer(cb, n)};
+}
+
+}  // namespace
+
+Reconstruction::Reconstruction(const SurfaceMesh& mesh, Real nu, const ReconstructionOptions& options)
+    : vertices_(mesh.vertex_count()), nodes_(mesh.triangle_count()) {
+  for (std::size_t t = 0; t < nodes_.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) nodes_[t][k] = mesh.triangles[t][k];
+  if (options.element == Element::kLinear) {
+    add_linear_nodes(mesh);
+    return;
+  }
+  const SurfaceCorners corners = make_surface_corners(mesh, options.feature_angle);
+  std::vector<std::optional<SurfaceFit>> made(corners.corner.size());
+  parallel_for(made.size(), 32, [&](std::size_t c) { made[c].emplace(mesh, corners, c, options.fit); });
+  std::vector<SurfaceFit> fits;
+  fits.reserve(made.size());
+  for (auto& f : made) fits.push_back(std::move(*f));
+  for (const SurfaceFit& f : fits) {
+    frames_.push_back(free_surface_frame(f, nu));
+    for (std::size_t k = 0; k < f.patch().size(); ++k) gradients_.push_back({f.patch()[k], f.row_x()[k], f.row_y()[k]});
+    first_gradient_.push_back(gradients_.size());
+  }
+  add_edge_nodes(mesh, corners, fits);
+  add_centres(mesh, corners, fits);
+}
+
+void Reconstruction::close_node() {
+  node_entries_.push_back(entries_.size()), node_terms_.push_back(terms_.size());
+}
+
+// Hermite cubic along each edge; at a crease the mean of the fits of both sides, so that u stays continuous, which the
+// Guenter form needs.
+void Reconstruction::add_edge_nodes(const SurfaceMesh& mesh, const SurfaceCorners& corners,
+                                    const std::vector<SurfaceFit>& fits) {
+  const std::vector<std::uint32_t> twin = build_twins(mesh);
+  for (std::uint32_t e = 0; e < twin.size(); ++e) {
+    const std::uint32_t other = twin[e];
+    if (other != kNone && other < e) continue;
+    const std::size_t t = e / 3, k = e % 3, next = (k + 1) % 3;
+    const std::uint32_t p = mesh.triangles[t][k], q = mesh.triangles[t][next];
+    const Vec3 d = mesh.vertices[q] - mesh.vertices[p];
+    std::vector<std::uint32_t> at_p{corners.at(t, k)}, at_q{corners.at(t, next)};
+    if (other != kNone && corners.smooth[e] == kNone) {
+      at_p.push_back(corners.at(other / 3, (other % 3 + 1) % 3));
+      at_q.push_back(corners.at(other / 3, other % 3));
+    }
+    for (int third = 1; third <= 2; ++third) {
+      const Real l = third / 3.0, l2 = l * l, l3 = l2 * l, to_q = 3 * l2 - 2 * l3;
+      entries_.push_back({p, 1 - to_q}), entries_.push_back({q, to_q});
+      const auto add = [&](const std::vector<std::uint32_t>& ends, Real factor) {
+        for (const std::uint32_t c : ends) {
+          const SurfaceFit& f = fits[c];
+          const Real w = factor / static_cast<Real>(ends.size()), x = dot(d, f.a()), y = dot(d, f.b());
+          const Real rise = x * f.slope_x() + y * f.slope_y() - dot(d, f.normal());
+          terms_.push_back({c, w * x, w * y, w * rise});
+        }
+      };
+      add(at_p, l - 2 * l2 + l3), add(at_q, -l2 + l3);
+      const auto node = static_cast<std::uint32_t>(node_count());
+      close_node();
+      nodes_[t][3 + 2 * k + static_cast<std::size_t>(third - 1)] = node;
+      if (other != kNone) nodes_[other / 3][3 + 2 * (other % 3) + static_cast<std::size_t>(2 - third)] = node;
+    }
+  }
+}
+
+// The mean of the three vertex polynomials at the centroid.
+void Reconstruction::add_centres(const SurfaceMesh& mesh, const SurfaceCorners& corners,
+                                 const std::vector<SurfaceFit>& fits) {
+  std::map<std::uint32_t, Real> row;
+  for (std::size_t t = 0; t < nodes_.size(); ++t) {
+    row.clear();
+    const Vec3 x = mesh.centroid(t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t c = corners.at(t, k);
+      Real rise = 0;
+      const std::vector<Real> weights = fits[c].value_row(x, rise);
+      for (std::size_t i = 0; i < weights.size(); ++i) row[fits[c].patch()[i]] += weights[i] / 3;
+      terms_.push_back({c, 0, 0, rise / 3});
+    }
+    for (const auto& [v, w] : row) entries_.push_back({v, w});
+    nodes_[t][9] = static_cast<std::uint32_t>(node_count());
+    close_node();
+  }
+}
+
+void Reconstruction::add_linear_nodes(const SurfaceMesh& mesh) {
+  for (std::size_t t = 0; t < nodes_.size(); ++t)
+    for (std::size_t k = 0; k < 7; ++k) {
+      const Triangle& v = mesh.triangles[t];
+      if (k == 6)
+        for (const std::uint32_t i : v) entries_.push_back({i, 1.0 / 3});
+      else {
+        const Real l = k % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
+        entries_.push_back({v[k / 2], 1 - l}), entries_.push_back({v[(k / 2 + 1) % 3], l});
+      }
+      nodes_[t][3 + k] = static_cast<std::uint32_t>(node_count());
+      close_node();
+    }
+}
+
+std::span<const Reconstruction::Entry> Reconstruction::entries(std::uint32_t node) const {
+  const std::size_t i = node - vertices_;
+  return {entries_.data() + node_entries_[i], node_entries_[i + 1] - node_entries_[i]};
+}
+std::span<const Reconstruction::Term> Reconstruction::terms(std::uint32_t node) const {
+  const std::size_t i = node - vertices_;
+  return {terms_.data() + node_terms_[i], node_terms_[i + 1] - node_terms_[i]};
+}
+std::span<const Reconstruction::GradientEntry> Reconstruction::gradient(std::uint32_t corner) const {
+  return {gradients_.data() + first_gradient_[corner], first_gradient_[corner + 1] - first_gradient_[corner]};
+}
+
+void Reconstruction::apply(const Vec3Column& u, Vec3Column& out) const {
+  Vec3Column gx(corner_count()), gy(corner_count());
+  parallel_for(corner_count(), 512, [&](std::size_t c) {
+    Vec3 x, y;
+    for (const GradientEntry& g : gradient(static_cast<std::uint32_t>(c)))
+      x += u[g.vertex] * g.x, y += u[g.vertex] * g.y;
+    gx.set(c, x), gy.set(c, y);
+  });
+  out.resize(node_count());
+  parallel_for(node_count(), 512, [&](std::size_t i) {
+    if (i < vertices_) {
+      out.set(i, u[i]);
+      return;
+    }
+    const auto node = static_cast<std::uint32_t>(i);
+    Vec3 sum;
+    for (const Entry& e : entries(node)) sum += u[e.vertex] * e.weight;
+    for (const Term& t : terms(node)) {
+      const Frame& f = frames_[t.corner];
+      const Vec3 x = gx[t.corner], y = gy[t.corner];
+      sum += x * t.x + y * t.y + (f.x * x + f.y * y) * t.z;
+    }
+    out.set(i, sum);
+  });
+}
+
+std::vector<std::pair<std::uint32_t, Mat3>> Reconstruction::row(std::uint32_t node) const {
+  if (node < vertices_) return {{node, Mat3::identity()}};
+  std::map<std::uint32_t, Mat3> sum;
+  for (const Entry& e : entries(node)) sum[e.vertex] += Mat3::identity() * e.weight;
+  for (const Term& t : terms(node)) {
+    const Frame& f = frames_[t.corner];
+    for (const GradientEntry& g : gradient(t.corner))
+      sum[g.vertex] += Mat3::identity() * (t.x * g.x + t.y * g.y) + (f.x * g.x + f.y * g.y) * t.z;
+  }
+  return {sum.begin(), sum.end()};
+}
+
+}  // namespace sherd
