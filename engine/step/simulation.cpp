@@ -158,7 +158,8 @@ void Simulation::Impl::add_solids(const BuiltBody& built, std::size_t scene_body
   for (Body& part : parts) {
     part.id = part.parent = BodyId{next_id++};
     if (part.breakable && scene.fracture.enabled) require_solvable(part, built.edge_length);
-    const RootScale root{built.edge_length, part.mass.volume, bounding_box(*part.mesh).diagonal()};
+    const RootScale root{built.edge_length, part.mass.volume, bounding_box(*part.mesh).diagonal(),
+                         scene.bodies[scene_body].edge_per_thickness};
     companions.push_back({.solid = std::make_shared<Solid>(part.mesh, root), .scene_body = scene_body});
     bodies.push_back(std::move(part));
   }

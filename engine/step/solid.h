@@ -12,9 +12,10 @@ namespace sherd {
 
 // Lengths that all fragments of a scene body share.
 struct RootScale {
-  Real edge_length = 0;  // target edge h, m
-  Real volume = 0;       // of the scene body, m^3
-  Real diagonal = 0;     // of its bounding box, m
+  Real edge_length = 0;         // target edge h, m
+  Real volume = 0;              // of the scene body, m^3
+  Real diagonal = 0;            // of its bounding box, m
+  Real edge_per_thickness = 0;  // of the scene body
 };
 
 // A crack that stopped inside is kept as a sheet beside the *clean* mesh (without its notch): the stress is solved on
