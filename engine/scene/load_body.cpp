@@ -231,6 +231,7 @@ SceneBody read_body(const TomlValue& value, const std::filesystem::path& folder,
   if (size > 0) edge.low = kFinestEdge * size, edge.high = size;
   body.edge_length = reader.number("edge_length", edge, 0);
   body.edge_per_thickness = reader.number("edge_per_thickness", {0, 20}, 0);
+  body.merge_features = reader.number("merge_features", {0, 0.5}, body.merge_features);
   constexpr std::array<std::string_view, 2> kAnchors{"centre", "base"};
   body.anchor = reader.choice("anchor", kAnchors, 0) == 0 ? Anchor::kCentreOfMass : Anchor::kBase;
   body.position = reader.vector("position", kCoordinate, {});

@@ -70,6 +70,7 @@ struct SceneBody {
   std::variant<MeshSpec, ShapeSpec> source;
   Real edge_length = 0;         // target edge of the surface mesh, m; 0 asks for 1/40 of the diagonal
   Real edge_per_thickness = 0;  // edges at most this many times as long as the wall is thick; 0: edge_length everywhere
+  Real merge_features = 0.02;   // creases closer than this part of the edges are merged where they force slivers
   Anchor anchor = Anchor::kCentreOfMass;
   Vec3 position;          // m
   Vec3 rotation;          // rotation vector (unit axis times angle), radians, material to world

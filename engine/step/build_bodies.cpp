@@ -9,9 +9,6 @@
 namespace sherd {
 namespace {
 
-// Scans have creases closer than the target length: without merging them slivers of a few degrees remain.
-constexpr Real kMerge = 0.4;
-
 void remesh_to(SurfaceMesh& mesh, const SizingOptions& sizing, const std::string& name,
                std::vector<std::string>& messages) {
   const Real edge_length = sizing.edge_length;
@@ -42,7 +39,7 @@ BuiltBody build_body(const SceneBody& s, BodyId id) {
   SurfaceMesh mesh = scene_mesh(s, built.messages);
   built.edge_length = scene_edge_length(s, mesh);
   const SizingOptions sizing{
-      .edge_length = built.edge_length, .edge_per_thickness = s.edge_per_thickness, .merge = kMerge};
+      .edge_length = built.edge_length, .edge_per_thickness = s.edge_per_thickness, .merge = s.merge_features};
   if (std::holds_alternative<MeshSpec>(s.source)) {
     remesh_to(mesh, sizing, s.name, built.messages);
   } else if (const Real finest = finest_target(mesh, sizing); finest < built.edge_length) {

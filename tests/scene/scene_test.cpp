@@ -22,6 +22,7 @@ TEST_F(SceneValues, SmallestSceneHasTheDocumentedDefaults) {
   EXPECT_EQ(scene.bodies[0].material.name, "ceramic");
   EXPECT_EQ(scene.bodies[0].rotation, Vec3{});
   EXPECT_EQ(scene.bodies[0].edge_per_thickness, 0);
+  EXPECT_EQ(scene.bodies[0].merge_features, 0.02);
   EXPECT_TRUE(scene.bodies[0].breakable);
   EXPECT_TRUE(scene.ground.enabled);
   EXPECT_FALSE(scene.contact.duration);
@@ -45,6 +46,7 @@ up = "z"
 max_hole = 0.01
 edge_length = 0.008
 edge_per_thickness = 2.5
+merge_features = 0.4
 anchor = "base"
 position = [1, 2, 3]
 velocity = [4, 5, 6]
@@ -106,6 +108,7 @@ material_view = "table"
   EXPECT_EQ(mesh.max_hole, 0.01);
   EXPECT_EQ(pot.edge_length, 0.008);
   EXPECT_EQ(pot.edge_per_thickness, 2.5);
+  EXPECT_EQ(pot.merge_features, 0.4);
   EXPECT_EQ(pot.anchor, Anchor::kBase);
   EXPECT_EQ(pot.position, (Vec3{1, 2, 3}));
   EXPECT_EQ(pot.velocity, (Vec3{4, 5, 6}));
