@@ -16,6 +16,7 @@ namespace {
 
 constexpr Real kBalanced = 1e-6;   // residual net load, relative, that the digits of a text file may leave
 constexpr Real kOnSurface = 1e-3;  // of a triangle's longest edge: points this near count as on the surface
+constexpr Real kWalls = 0.01;      // share of the surface worth a warning
 constexpr std::size_t kNamed = 5;  // points named in one error
 
 struct Member {
@@ -66,6 +67,7 @@ struct Analysis::Impl {
   std::size_t lasting_warnings = 0;  // those that do not depend on the load
 
   void add_solids(const SurfaceMesh& mesh);
+  void check_resolution();
   void choose_storage(std::size_t unknowns2);
   void build_solvers();
   bool locate_on_face(const Vec3& x, std::uint32_t face, LocatedPoints& points, std::string& why) const;
@@ -97,6 +99,23 @@ void Analysis::Impl::add_solids(const SurfaceMesh& mesh) {
   }
   choose_storage(unknowns2);
   for (Member& m : members) m.mesh = split_triangles(m.mesh, options.refine);
+  check_resolution();
+}
+
+void Analysis::Impl::check_resolution() {
+  const bool direct = options.formulation == Formulation::kDirect;
+  const ResolutionRule& rule = direct ? kCubicTestedRule : kLinearCollocationRule;
+  for (std::size_t s = 0; s < members.size(); ++s) {
+    SolidReport& r = report.solids[s];
+    r.resolution = resolution_report(members[s].mesh, rule);
+    for (const std::string& text : resolution_warnings(r.resolution, rule))
+      report.warnings.push_back(fmt::format("the solid of face {}: {}", r.first_face, text));
+    if (!direct && r.resolution.wall_share > kWalls)
+      report.warnings.push_back(
+          fmt::format("the solid of face {}: {:.0f} % of its surface is a thin wall; the indirect formulation gets the "
+                      "bending of walls wrong however fine the mesh, use the direct one",
+                      r.first_face, 100 * r.resolution.wall_share));
+  }
 }
 
 void Analysis::Impl::choose_storage(std::size_t unknowns2) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/load/load.h"
+#include "engine/mesh/thickness_resolution.h"
 #include "kernels/core/symmetric.h"
 #include "kernels/fundamental/elastic.h"
 
@@ -39,6 +40,7 @@ struct SolidReport {
   Vec3 net_force, net_moment;        // of the load as given, N and N m about the centroid
   Real force_residual = 0;           // |net force| / (sum |t| A + integral |b|)
   Real moment_residual = 0;          // |net moment| / (the same times half the bounding box's diagonal)
+  ResolutionReport resolution;       // elements against wall thickness, refined
   int iterations = 0, products = 0;  // of the Krylov solver
   Real residual = 0;                 // true relative residual at its end
   bool converged = false;            // to what was asked of the linear system

@@ -151,6 +151,7 @@ Json solids_json(const AnalysisReport& report) {
                       {"net_moment", to_json(s.net_moment)},
                       {"force_residual", s.force_residual},
                       {"moment_residual", s.moment_residual},
+                      {"resolution", Json::parse(to_json(s.resolution))},
                       {"iterations", s.iterations},
                       {"products", s.products},
                       {"residual", s.residual},
