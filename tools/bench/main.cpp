@@ -16,7 +16,7 @@ namespace {
 
 struct StressCommand {
   sherd::bench::StressOptions options;
-  std::string formulation = "both";
+  std::string formulation = "both", testing = "auto";
   int threads = 0, degree = 0;
   double gigabytes = 6;
 };
@@ -42,6 +42,11 @@ CLI::App* add_stress(CLI::App& app, StressCommand& c) {
   stress->add_option("--formulation", c.formulation)
       ->check(CLI::IsMember({"direct", "indirect", "both"}))
       ->capture_default_str();
+  stress->add_option("--testing", c.testing, "rows of the direct formulation")
+      ->check(CLI::IsMember({"collocation", "auto", "galerkin"}))
+      ->capture_default_str();
+  stress->add_option("--thin-ratio", c.options.solve.elastic.thin_ratio, "edge / wall beyond which auto means galerkin")
+      ->capture_default_str();
   stress->add_option("--tolerance", c.options.solve.elastic.krylov.tolerance, "of the linear solver")
       ->capture_default_str();
   stress->add_option("--degree", c.degree, "of the stress recovery, 1 to 4; 0: the library's choice")
@@ -64,6 +69,9 @@ int run_stress(StressCommand& c) {
   const sherd::ThreadLimit limit(c.threads);
   o.direct = c.formulation != "indirect", o.indirect = c.formulation != "direct";
   o.solve.elastic.max_bytes = static_cast<std::size_t>(c.gigabytes * (1 << 30));
+  o.solve.elastic.testing = c.testing == "auto"       ? sherd::TestingRule::kAuto
+                            : c.testing == "galerkin" ? sherd::TestingRule::kGalerkin
+                                                      : sherd::TestingRule::kCollocation;
   if (c.degree > 0) o.solve.recovery.fit = {c.degree, c.degree};
   if (!o.cases.empty() && o.studies.empty()) o.studies = {sherd::bench::Study::kTable};
   try {

@@ -23,6 +23,8 @@ struct ExactCase {
   std::function<Vec3(const Vec3& x)> displacement;             // m, up to a rigid motion of the solver's solution
   std::function<Sym3(const Vec3& x)> stress;                   // Pa
   std::function<Vec3(const Vec3& x, const Vec3& n)> traction;  // at x on a facet with unit outward normal n, Pa
+  // Nearest point of the true solid, for points of a polyhedron that reaches outside of it; empty: contained.
+  std::function<Vec3(const Vec3& x)> nearest_inside;
   Real peak = 1;       // largest absolute principal stress in the body, Pa: the scale of the errors
   Real thickness = 0;  // of the wall, m; 0 for bulky bodies
 };

@@ -63,7 +63,8 @@ SurfaceError recovery_floor(const ExactCase& c, const Solved& solved);
 
 // At `count` points a given depth below the surface, in units of the edge of the equilateral triangle with the area of
 // the face above: random faces (uniform over those with |centroid| <= within), random places on them. Points nearer to
-// another part of the surface are not counted.
+// another part of the surface are not counted; points outside of the true solid (facets of a cavity stand out of its
+// wall) are compared with its nearest point.
 StressError interior_error(const ExactCase& c, const Solved& solved, Real depth, std::size_t count,
                            Real within = 1e300);
 

@@ -64,6 +64,7 @@ ExactCase hollow_sphere(int f) {
   fit(c, {{kLove, {0, false}}, {kGradient, {0, true}}},
       {{kInner, [](const Vec3& x) { return normalized(x) * -1.0; }}, {1, no_traction}});
   c.traction = [](const Vec3& x, const Vec3& n) { return norm(x) < 0.75 ? n * -1.0 : Vec3{}; };
+  c.nearest_inside = [](const Vec3& x) { return norm(x) < 0.5 ? normalized(x) * 0.5 : x; };
   c.peak = 1;  // the pressure itself; the hoop stress inside is 5/7
   return c;
 }
@@ -81,6 +82,7 @@ ExactCase cavity(int f, Real outer) {
   c.traction = [sigma = c.stress, middle = 0.5 * (1 + outer)](const Vec3& x, const Vec3& n) {
     return norm(x) < middle ? Vec3{} : sigma(x) * n;
   };
+  c.nearest_inside = [](const Vec3& x) { return norm(x) < 1 ? normalized(x) : x; };
   c.peak = (27 - 15 * kMaterial.nu) / (2 * (7 - 5 * kMaterial.nu));  // Southwell and Gough 1926
   return c;
 }
@@ -127,6 +129,7 @@ ExactCase spherical_shell(int f, Real inner) {
   };
   fit(c, {{kGradient, grow}, {kLove, grow}, {kGradient, decay}, {kLove, decay}}, {{inner, pressure}, {1, no_traction}});
   c.traction = [sigma = c.stress](const Vec3& x, const Vec3& n) { return sigma(x) * n; };
+  c.nearest_inside = [inner](const Vec3& x) { return norm(x) < inner ? normalized(x) * inner : x; };
   c.peak = largest_principal(c, {inner, 1});
   c.thickness = 1 - inner;
   return c;
