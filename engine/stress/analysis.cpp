@@ -112,8 +112,8 @@ void Analysis::Impl::check_resolution() {
       report.warnings.push_back(fmt::format("the solid of face {}: {}", r.first_face, text));
     if (!direct && r.resolution.wall_share > kWalls)
       report.warnings.push_back(
-          fmt::format("the solid of face {}: {:.0f} % of its surface is a thin wall; the indirect formulation gets the "
-                      "bending of walls wrong however fine the mesh, use the direct one",
+          fmt::format("the solid of face {}: {:.0f} % of its surface has a parallel side behind it; the indirect "
+                      "formulation gets the bending of such parts wrong however fine the mesh, use the direct one",
                       r.first_face, 100 * r.resolution.wall_share));
   }
 }
