@@ -44,7 +44,7 @@ struct SolidReport {
   int iterations = 0, products = 0;  // of the Krylov solver
   Real residual = 0;                 // true relative residual at its end
   bool converged = false;            // to what was asked of the linear system
-  bool solved = false;               // converged, or at least to `tolerance`
+  bool solved = false;               // converged, or short of it by less than a factor of ten
   std::string reason;                // when not converged
 };
 

@@ -17,6 +17,9 @@ double now() {
 // (plate 20:1) the stress erred by 0.4 of the residual; a hundredth costs six more iterations there and leaves room for
 // bodies where it does not.
 constexpr Real kResidualShare = 0.01;
+// Stagnation that near the goal still serves; the warning stays. On a plate 100:1 with elements eight walls long a
+// residual of 1e-3 hid a stress 30 % low.
+constexpr Real kNearMiss = 10;
 constexpr Real kLeastResidual = 1e-12;  // what double precision reaches
 
 bool all_finite(const Vec3Column& u) {
@@ -37,7 +40,7 @@ template <class Body, class State, class Options, auto kValues>
 class BodySolver final : public SolidSolver {
  public:
   BodySolver(const SurfaceMesh& mesh, const Elastic& material, const SolverOptions& options, const Options& own)
-      : tolerance_(options.tolerance),
+      : wanted_(own.krylov.tolerance),
         bvh_(mesh),
         recovery_(mesh, {options.feature_angle, {}}),
         body_(mesh, material, own) {
@@ -55,7 +58,7 @@ class BodySolver final : public SolidSolver {
     report.iterations = solution.krylov.iterations, report.products = solution.krylov.products;
     report.residual = solution.krylov.residual;
     report.converged = solution.ok, report.reason = solution.reason;
-    report.solved = solution.ok || (solution.krylov.residual <= tolerance_ && all_finite(solution.*kValues));
+    report.solved = solution.ok || (solution.krylov.residual <= kNearMiss * wanted_ && all_finite(solution.*kValues));
     if (!report.solved) return;
     const StageTimer timer(seconds.recover);
     state_ = std::make_unique<State>(body_, recovery_, bvh_, load, particular, solution);
@@ -63,7 +66,7 @@ class BodySolver final : public SolidSolver {
   const StressField* field() const override { return state_.get(); }
 
  private:
-  Real tolerance_;
+  Real wanted_;  // residual
   TriangleBvh bvh_;
   SurfaceRecovery recovery_;
   Body body_;
