@@ -31,29 +31,21 @@ struct Reach {
   const Testing::Weight* weight;
 };
 
-// rows of vertex += sum over panels and points of weight * rows at the point, in strips of columns that stay in cache.
+// Rows of a vertex += sum over panels and points of weight * rows at the point.
 template <class Scalar>
 void add_tested(const std::vector<Reach>& reach, const std::vector<Real>& batch, std::size_t columns,
                 std::span<Scalar> out) {
-  constexpr std::size_t kStrip = 256;
-  for (std::size_t c0 = 0; c0 < columns; c0 += kStrip) {
-    const std::size_t n = std::min(kStrip, columns - c0);
-    Real sum[3][kStrip] = {};
-    for (const Reach& r : reach)
-      for (std::size_t k = 0; k < Testing::kPoints; ++k) {
-        const Mat3& w = r.weight->block[k];
-        for (int j = 0; j < 3; ++j) {
-          const Real* row =
-              batch.data() + (r.slot * 3 * Testing::kPoints + 3 * k + static_cast<std::size_t>(j)) * columns + c0;
-          for (std::size_t i = 0; i < 3; ++i) {
-            const Real f = w[static_cast<int>(i)][j];
-            for (std::size_t c = 0; c < n; ++c) sum[i][c] += f * row[c];
-          }
-        }
-      }
+  constexpr std::size_t kRows = 3 * Testing::kPoints;
+  std::vector<const double*> panels;
+  std::vector<Real> weights, sum(3 * columns);
+  for (const Reach& r : reach) {
+    panels.push_back(batch.data() + r.slot * kRows * columns);
     for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t c = 0; c < n; ++c) out[i * columns + c0 + c] += static_cast<Scalar>(sum[i][c]);
+      for (std::size_t k = 0; k < Testing::kPoints; ++k)
+        for (std::size_t j = 0; j < 3; ++j) weights.push_back(r.weight->block[k].m[i][j]);
   }
+  lane_kernels().add_rows(panels.data(), weights.data(), panels.size(), kRows, columns, columns, sum.data());
+  for (std::size_t i = 0; i < sum.size(); ++i) out[i] += static_cast<Scalar>(sum[i]);
 }
 
 template <class Scalar>

@@ -7,14 +7,12 @@
 #include <span>
 
 #include "engine/elastostatic/boundary.h"
+#include "engine/elastostatic/lane_kernels.h"
 #include "engine/elastostatic/reconstruction.h"
 
 namespace sherd {
 
 // Targets are evaluated eight at a time, one a SIMD lane.
-inline constexpr std::size_t kLanes = 8;
-using Lane [[gnu::vector_size(64)]] = Real;
-
 struct TargetGroup {
   std::size_t count = 0;  // lanes in use; the others repeat the first
   std::array<Vec3, kLanes> x;

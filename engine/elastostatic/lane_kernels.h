@@ -1,0 +1,94 @@
+// The inner loops of the operator's rows: eight targets at once, one a SIMD lane. The same source is compiled for the
+// baseline processor and for AVX-512 and chosen at run time, so everything passes as plain arrays: code shared with
+// other translation units must not be compiled for a processor that may be absent.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace sherd {
+
+inline constexpr std::size_t kLanes = 8;
+
+// A panel as the loops see it. Units m, m^2 for the area, 1/m for the gradients of the coordinates s and t.
+struct LanePanel {
+  double three[3][3], six[6][3];  // points of kGauss3 and kGauss6
+  double normal[3], gradient_s[3], gradient_t[3];
+  double area;
+};
+
+// K = one I / l + two r r^T / l^3; the double layer times `angle`.
+struct LaneConstants {
+  double one, two, angle;
+};
+
+// Weights of the ten shape functions (cubic.h) and of their derivatives: over the six quadratic monomials (shape over
+// the ten cubic ones), and over the values at the points of the two rules, exact for kernels that vary linearly
+// (three) or quadratically (six) over the panel.
+struct LaneTables {
+  double monomial_s[10][6], monomial_t[10][6], monomial_shape[10][10];
+  double three_s[10][3], three_t[10][3], three_shape[10][3];
+  double six_s[10][6], six_t[10][6], six_shape[10][6];
+};
+
+// Integrals against the monomials, for the lanes in closed form; zero in the others.
+struct LaneMoments {
+  double kernel[6][6][kLanes];  // [monomial][xx, yy, zz, yz, xz, xy]
+  double angle[10][kLanes];
+};
+
+// One block of three rows by three columns for all lanes: [row][column][lane].
+inline constexpr std::size_t kLaneBlock = 9 * kLanes;
+
+// The transposed reconstruction of a block of panels, flattened: see Reconstruction.
+struct LaneGather {
+  struct Node {
+    std::uint32_t first_entry, last_entry, first_term, last_term;
+    std::uint32_t vertex;  // the vertex the node is, or 0xFFFFFFFF
+  };
+  struct Entry {
+    std::uint32_t vertex;
+    double weight;
+  };
+  struct Term {
+    std::uint32_t corner;  // in the block
+    double x, y, z;
+  };
+  struct Corner {
+    std::uint32_t first, last;
+    double frame_x[9], frame_y[9];
+  };
+  struct Gradient {
+    std::uint32_t vertex;
+    double x, y;
+  };
+  const Node* nodes;
+  std::size_t node_count;
+  const Entry* entries;
+  const Term* terms;
+  const Corner* corners;
+  std::size_t corner_count;
+  const Gradient* gradients;
+};
+
+struct LaneKernels {
+  // x: three coordinates of the lanes, 3 kLanes. mask: 1 or 0 a lane. local: the panel's ten nodes, indices into
+  // `nodes` (kLaneBlock numbers each), which is added to; total (kLanes) gathers the double layer of 1.
+  void (*three_points)(const LanePanel&, const LaneTables&, const LaneConstants&, const double* x,
+                       const std::uint32_t* local, double* nodes, double* total);
+  void (*six_points)(const LanePanel&, const LaneTables&, const LaneConstants&, const double* x, const double* mask,
+                     const std::uint32_t* local, double* nodes, double* total);
+  void (*moments)(const LanePanel&, const LaneTables&, const LaneMoments&, const std::uint32_t* local, double* nodes,
+                  double* total);
+  // nodes -> vertices (added to), with `corners` (2 kLaneBlock numbers each) as workspace.
+  void (*gather)(const LaneGather&, const double* nodes, double* corners, double* vertices);
+  // out[3][width] += sum over the panels p of a batch and their rows r of weight[p][i][r] * rows[p][r][width]; rows of
+  // a panel are `stride` apart.
+  void (*add_rows)(const double* const* panels, const double* weights, std::size_t count, std::size_t rows,
+                   std::size_t stride, std::size_t width, double* out);
+};
+
+// The fastest this processor runs.
+const LaneKernels& lane_kernels();
+const LaneKernels& baseline_lane_kernels();
+
+}  // namespace sherd

@@ -1,0 +1,209 @@
+// Included by one translation unit per processor, with SHERD_LANE_KERNELS naming its table and SHERD_LANE_WIDTH the
+// lanes of one register. Internal linkage throughout.
+#include <cmath>
+
+#include "engine/elastostatic/lane_kernels.h"
+
+namespace sherd {
+namespace {
+
+constexpr std::size_t kWidth = SHERD_LANE_WIDTH;
+using V [[gnu::vector_size(8 * SHERD_LANE_WIDTH)]] = double;
+
+inline V load(const double* p) {
+  V v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+inline void store(double* p, V v) {
+  __builtin_memcpy(p, &v, sizeof v);
+}
+inline V inverse_root(V a) {
+  V r;
+  for (std::size_t k = 0; k < kWidth; ++k) r[k] = 1 / std::sqrt(a[k]);
+  return r;
+}
+
+// Kernel (order xx, yy, zz, yz, xz, xy) and double layer of a point at the targets x, times w.
+inline void point_values(const V x[3], const double* y, const double* n, V w, const LaneConstants& c, V kernel[6],
+                         V& angle) {
+  const V r0 = x[0] - y[0], r1 = x[1] - y[1], r2 = x[2] - y[2];
+  const V inverse = inverse_root(r0 * r0 + r1 * r1 + r2 * r2);
+  const V scaled = inverse * w, cube = scaled * inverse * inverse, diagonal = scaled * c.one, dyad = cube * c.two;
+  const V d0 = dyad * r0, d1 = dyad * r1, d2 = dyad * r2;
+  kernel[0] = diagonal + d0 * r0, kernel[1] = diagonal + d1 * r1, kernel[2] = diagonal + d2 * r2;
+  kernel[3] = d1 * r2, kernel[4] = d0 * r2, kernel[5] = d0 * r1;
+  angle = cube * (r0 * n[0] + r1 * n[1] + r2 * n[2]) * c.angle;
+}
+
+inline void multiply(const V k[6], const double* v, V out[3]) {
+  out[0] = k[0] * v[0] + k[5] * v[1] + k[4] * v[2];
+  out[1] = k[5] * v[0] + k[1] * v[1] + k[3] * v[2];
+  out[2] = k[4] * v[0] + k[3] * v[1] + k[2] * v[2];
+}
+
+// M u = sum over nodes (grad N_a n^T - n grad N_a^T) u_a: the panel's blocks go to its ten nodes.
+template <int N>
+inline void scatter(const LanePanel& f, const V kernel[][6], const V angle[10], const double (*table_s)[N],
+                    const double (*table_t)[N], const std::uint32_t* local, double* nodes) {
+  V ks[3][N], kt[3][N], kn[3][N];
+  for (int b = 0; b < N; ++b) {
+    V s[3], t[3], n[3];
+    multiply(kernel[b], f.gradient_s, s), multiply(kernel[b], f.gradient_t, t), multiply(kernel[b], f.normal, n);
+    for (int i = 0; i < 3; ++i) ks[i][b] = s[i], kt[i][b] = t[i], kn[i][b] = n[i];
+  }
+  for (int i = 0; i < 3; ++i)
+    for (int a = 0; a < 10; ++a) {
+      V p{}, vs{}, vt{};
+      for (int b = 0; b < N; ++b) {
+        const double s = table_s[a][b], t = table_t[a][b];
+        p += ks[i][b] * s + kt[i][b] * t;
+        vs += kn[i][b] * s, vt += kn[i][b] * t;
+      }
+      double* block = nodes + kLaneBlock * local[a] + 3 * kLanes * static_cast<std::size_t>(i);
+      for (int j = 0; j < 3; ++j) {
+        V v = load(block + kLanes * static_cast<std::size_t>(j)) + p * f.normal[j] - vs * f.gradient_s[j] -
+              vt * f.gradient_t[j];
+        if (i == j) v += angle[a];
+        store(block + kLanes * static_cast<std::size_t>(j), v);
+      }
+    }
+}
+
+template <int N>
+inline void points(const LanePanel& f, const double (*y)[3], const double (*table_s)[N], const double (*table_t)[N],
+                   const double (*shape)[N], const LaneConstants& c, const double* x, const double* mask,
+                   const std::uint32_t* local, double* nodes, double* total) {
+  for (std::size_t h = 0; h < kLanes; h += kWidth) {
+    const V target[3] = {load(x + h), load(x + kLanes + h), load(x + 2 * kLanes + h)};
+    const V w = mask ? load(mask + h) * f.area : V{} + f.area;
+    V kernel[N][6], value[N], angle[10], sum = load(total + h);
+    for (int q = 0; q < N; ++q) {
+      point_values(target, y[q], f.normal, w, c, kernel[q], value[q]);
+    }
+    for (int a = 0; a < 10; ++a) {
+      angle[a] = V{};
+      for (int q = 0; q < N; ++q) angle[a] += value[q] * shape[a][q];
+      sum += angle[a];
+    }
+    store(total + h, sum);
+    scatter<N>(f, kernel, angle, table_s, table_t, local, nodes + h);
+  }
+}
+
+void three_points(const LanePanel& f, const LaneTables& t, const LaneConstants& c, const double* x,
+                  const std::uint32_t* local, double* nodes, double* total) {
+  points<3>(f, f.three, t.three_s, t.three_t, t.three_shape, c, x, nullptr, local, nodes, total);
+}
+
+void six_points(const LanePanel& f, const LaneTables& t, const LaneConstants& c, const double* x, const double* mask,
+                const std::uint32_t* local, double* nodes, double* total) {
+  points<6>(f, f.six, t.six_s, t.six_t, t.six_shape, c, x, mask, local, nodes, total);
+}
+
+void moments(const LanePanel& f, const LaneTables& t, const LaneMoments& m, const std::uint32_t* local, double* nodes,
+             double* total) {
+  for (std::size_t h = 0; h < kLanes; h += kWidth) {
+    V kernel[6][6], moment[10], angle[10];
+    for (int b = 0; b < 6; ++b)
+      for (int k = 0; k < 6; ++k) kernel[b][k] = load(m.kernel[b][k] + h);
+    for (int b = 0; b < 10; ++b) moment[b] = load(m.angle[b] + h);
+    store(total + h, load(total + h) + moment[0]);
+    for (int a = 0; a < 10; ++a) {
+      angle[a] = V{};
+      for (int b = 0; b < 10; ++b) angle[a] += moment[b] * t.monomial_shape[a][b];
+    }
+    scatter<6>(f, kernel, angle, t.monomial_s, t.monomial_t, local, nodes + h);
+  }
+}
+
+inline void add_block(double* out, const double* in, double w) {
+  for (std::size_t i = 0; i < kLaneBlock; i += kWidth) store(out + i, load(out + i) + load(in + i) * w);
+}
+
+// Block times 3x3 matrix, three rows at once, added.
+inline void add_product(double* out, const double* in, const double* m) {
+  for (std::size_t h = 0; h < kLanes; h += kWidth)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const V a = load(in + 3 * kLanes * i + h), b = load(in + 3 * kLanes * i + kLanes + h),
+              c = load(in + 3 * kLanes * i + 2 * kLanes + h);
+      for (std::size_t j = 0; j < 3; ++j) {
+        double* o = out + 3 * kLanes * i + kLanes * j + h;
+        store(o, load(o) + a * m[j] + b * m[3 + j] + c * m[6 + j]);
+      }
+    }
+}
+
+void gather(const LaneGather& g, const double* nodes, double* corners, double* vertices) {
+  for (std::size_t i = 0; i < 2 * kLaneBlock * g.corner_count; ++i) corners[i] = 0;
+  for (std::size_t k = 0; k < g.node_count; ++k) {
+    const LaneGather::Node& node = g.nodes[k];
+    const double* in = nodes + kLaneBlock * k;
+    if (node.vertex != 0xFFFFFFFFu) {
+      add_block(vertices + kLaneBlock * node.vertex, in, 1);
+      continue;
+    }
+    for (std::uint32_t e = node.first_entry; e < node.last_entry; ++e)
+      add_block(vertices + kLaneBlock * g.entries[e].vertex, in, g.entries[e].weight);
+    for (std::uint32_t e = node.first_term; e < node.last_term; ++e) {
+      const LaneGather::Term& t = g.terms[e];
+      const LaneGather::Corner& c = g.corners[t.corner];
+      double *gx = corners + 2 * kLaneBlock * t.corner, *gy = gx + kLaneBlock;
+      if (t.z == 0) {
+        if (t.x != 0) add_block(gx, in, t.x);
+        if (t.y != 0) add_block(gy, in, t.y);
+        continue;
+      }
+      double mx[9], my[9];
+      for (int i = 0; i < 9; ++i) {
+        mx[i] = t.z * c.frame_x[i] + (i % 4 == 0 ? t.x : 0);
+        my[i] = t.z * c.frame_y[i] + (i % 4 == 0 ? t.y : 0);
+      }
+      add_product(gx, in, mx), add_product(gy, in, my);
+    }
+  }
+  for (std::size_t k = 0; k < g.corner_count; ++k) {
+    const double *gx = corners + 2 * kLaneBlock * k, *gy = gx + kLaneBlock;
+    for (std::uint32_t e = g.corners[k].first; e < g.corners[k].last; ++e) {
+      const LaneGather::Gradient& r = g.gradients[e];
+      double* out = vertices + kLaneBlock * r.vertex;
+      for (std::size_t i = 0; i < kLaneBlock; i += kWidth)
+        store(out + i, load(out + i) + load(gx + i) * r.x + load(gy + i) * r.y);
+    }
+  }
+}
+
+void add_rows(const double* const* panels, const double* weights, std::size_t count, std::size_t rows,
+              std::size_t stride, std::size_t width, double* out) {
+  constexpr std::size_t kRegisters = SHERD_LANE_WIDTH == 8 ? 8 : 4, kStrip = kRegisters * kWidth;
+  std::size_t c = 0;
+  for (; c + kStrip <= width; c += kStrip) {
+    V sum[3][kRegisters];
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < kRegisters; ++k) sum[i][k] = load(out + i * width + c + k * kWidth);
+    for (std::size_t p = 0; p < count; ++p)
+      for (std::size_t r = 0; r < rows; ++r) {
+        const double *in = panels[p] + r * stride + c, *w = weights + 3 * rows * p;
+        for (std::size_t k = 0; k < kRegisters; ++k) {
+          const V v = load(in + k * kWidth);
+          sum[0][k] += v * w[r], sum[1][k] += v * w[rows + r], sum[2][k] += v * w[2 * rows + r];
+        }
+      }
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < kRegisters; ++k) store(out + i * width + c + k * kWidth, sum[i][k]);
+  }
+  for (; c < width; ++c)
+    for (std::size_t i = 0; i < 3; ++i) {
+      double sum = out[i * width + c];
+      for (std::size_t p = 0; p < count; ++p)
+        for (std::size_t r = 0; r < rows; ++r) sum += panels[p][r * stride + c] * weights[3 * rows * p + i * rows + r];
+      out[i * width + c] = sum;
+    }
+}
+
+}  // namespace
+
+extern const LaneKernels SHERD_LANE_KERNELS;
+const LaneKernels SHERD_LANE_KERNELS = {three_points, six_points, moments, gather, add_rows};
+
+}  // namespace sherd
