@@ -51,13 +51,13 @@ void add_tested(const std::vector<Reach>& reach, const std::vector<Real>& batch,
 template <class Scalar>
 void assemble_galerkin(const OperatorRows& operator_rows, const Testing& testing, DenseOperator<Scalar>& out) {
   const std::size_t columns = out.size(), panel_bytes = 3 * Testing::kPoints * columns * sizeof(Real);
-  const std::size_t batch_size = std::clamp<std::size_t>((std::size_t{64} << 20) / panel_bytes, 4, 128);
+  const std::size_t batch_size = std::clamp<std::size_t>((std::size_t{128} << 20) / panel_bytes, 16, 256);
   const std::vector<std::uint32_t>& panels = testing.panels();
   std::vector<Real> batch(batch_size * 3 * Testing::kPoints * columns);
   for (std::size_t first = 0; first < panels.size(); first += batch_size) {
     const std::size_t count = std::min(batch_size, panels.size() - first);
     std::vector<std::vector<Testing::Weight>> weights(count);
-    parallel_for_chunks(count, 1, [&](std::size_t begin, std::size_t end) {
+    parallel_for_chunks(count, 8, [&](std::size_t begin, std::size_t end) {
       const auto workspace = operator_rows.make_workspace();
       std::vector<Real> rows(3 * kLanes * columns);
       for (std::size_t i = begin; i < end; ++i) {

@@ -44,7 +44,7 @@ Reconstruction::Reconstruction(const SurfaceMesh& mesh, Real nu, const Reconstru
     first_gradient_.push_back(gradients_.size());
   }
   add_edge_nodes(mesh, corners, fits);
-  add_centres(mesh, corners, fits);
+  add_centres(mesh);
 }
 
 void Reconstruction::close_node() {
@@ -87,21 +87,25 @@ void Reconstruction::add_edge_nodes(const SurfaceMesh& mesh, const SurfaceCorner
   }
 }
 
-// The mean of the three vertex polynomials at the centroid.
-void Reconstruction::add_centres(const SurfaceMesh& mesh, const SurfaceCorners& corners,
-                                 const std::vector<SurfaceFit>& fits) {
-  std::map<std::uint32_t, Real> row;
+// The centre that makes the element exact for quadratics: a quarter of the edge nodes minus a sixth of the vertices.
+// The mean of the vertex polynomials, which is exact for cubics, measures no better on plates (1.13 to 1.41 % at q =
+// 3, 7.6 to 6.7 % at q = 6, h/T = 2), worse on shells (1.46 to 1.04 %) and reaches forty vertices instead of the
+// corners' own.
+void Reconstruction::add_centres(const SurfaceMesh& mesh) {
+  std::map<std::uint32_t, Real> entry;
+  std::map<std::uint32_t, Term> term;
   for (std::size_t t = 0; t < nodes_.size(); ++t) {
-    row.clear();
-    const Vec3 x = mesh.centroid(t);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t c = corners.at(t, k);
-      Real rise = 0;
-      const std::vector<Real> weights = fits[c].value_row(x, rise);
-      for (std::size_t i = 0; i < weights.size(); ++i) row[fits[c].patch()[i]] += weights[i] / 3;
-      terms_.push_back({c, 0, 0, rise / 3});
+    entry.clear(), term.clear();
+    for (const std::uint32_t v : mesh.triangles[t]) entry[v] -= 1.0 / 6;
+    for (std::size_t k = 3; k < 9; ++k) {
+      for (const Entry& e : entries(nodes_[t][k])) entry[e.vertex] += e.weight / 4;
+      for (const Term& m : terms(nodes_[t][k])) {
+        Term& sum = term.try_emplace(m.corner, Term{m.corner, 0, 0, 0}).first->second;
+        sum.x += m.x / 4, sum.y += m.y / 4, sum.z += m.z / 4;
+      }
     }
-    for (const auto& [v, w] : row) entries_.push_back({v, w});
+    for (const auto& [v, w] : entry) entries_.push_back({v, w});
+    for (const auto& [c, m] : term) terms_.push_back(m);
     nodes_[t][9] = static_cast<std::uint32_t>(node_count());
     close_node();
   }

@@ -1,7 +1,7 @@
 // Displacement on the triangles from displacement at the vertices: each flat triangle carries ten cubic nodes whose
 // values follow from vertex values and fitted vertex gradients (design notes, thin-walls section 7, steps 1 to 5). The
 // unknowns stay the vertices; bending of thin walls, which linear triangles lock, is resolved. Rigid motions and, where
-// the surface is free of traction, affine fields are reproduced to rounding on any polyhedron, cubic fields on flat
+// the surface is free of traction, affine fields are reproduced to rounding on any polyhedron, quadratic fields on flat
 // faces.
 #pragma once
 #include <span>
@@ -61,7 +61,7 @@ class Reconstruction {
 
  private:
   void add_edge_nodes(const SurfaceMesh& mesh, const SurfaceCorners& corners, const std::vector<SurfaceFit>& fits);
-  void add_centres(const SurfaceMesh& mesh, const SurfaceCorners& corners, const std::vector<SurfaceFit>& fits);
+  void add_centres(const SurfaceMesh& mesh);
   void add_linear_nodes(const SurfaceMesh& mesh);
   void close_node();
 

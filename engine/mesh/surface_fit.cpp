@@ -1,6 +1,7 @@
 #include "engine/mesh/surface_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace sherd {
@@ -88,9 +89,9 @@ SurfaceFit::SurfaceFit(const SurfaceMesh& mesh, const SurfaceCorners& corners, s
 // out. Returns false when a first derivative was.
 bool SurfaceFit::fit_rows(int degree, Real drop) {
   const std::size_t n = x_.size();
-  std::vector<std::vector<Real>> q;  // orthonormal columns
-  std::vector<std::vector<Real>> r;  // r[k][j]: coefficient of q_j in kept column k
-  monomial_.clear();
+  std::vector<std::vector<Real>> q;          // orthonormal columns
+  std::vector<std::vector<Real>> r;          // r[k][j]: coefficient of q_j in kept column k
+  std::vector<std::array<int, 2>> monomial;  // kept exponents
   for (int d = 1; d <= degree; ++d)
     for (int j = 0; j <= d; ++j) {
       if (q.size() >= n) break;
@@ -112,12 +113,12 @@ bool SurfaceFit::fit_rows(int degree, Real drop) {
       rest = std::sqrt(rest);
       for (Real& v : column) v /= rest;
       coefficient.push_back(rest);
-      q.push_back(std::move(column)), r.push_back(std::move(coefficient)), monomial_.push_back({d - j, j});
+      q.push_back(std::move(column)), r.push_back(std::move(coefficient)), monomial.push_back({d - j, j});
     }
-  if (monomial_.size() < 2 || monomial_[0][0] != 1 || monomial_[1][1] != 1) return false;
-  // coefficients = R^-1 Q^T W data, one monomial a row, by forward substitution of the transpose.
-  coefficient_.assign(q.size(), std::vector<Real>(n, 0));
-  for (std::size_t which = 0; which < q.size(); ++which) {
+  if (monomial.size() < 2 || monomial[0][0] != 1 || monomial[1][1] != 1) return false;
+  // coefficients = R^-1 Q^T W data; the first two rows, by forward substitution of the transpose.
+  coefficient_.assign(2, std::vector<Real>(n, 0));
+  for (std::size_t which = 0; which < 2; ++which) {
     std::vector<Real> z(q.size(), 0);  // z = R^-T e_which, with R_jk = r[k][j]
     for (std::size_t k = which; k < q.size(); ++k) {
       Real s = k == which ? 1 : 0;
@@ -138,19 +139,14 @@ void SurfaceFit::fit(int degree) {
   bool ok = false;
   // The safeguard against an ill-conditioned fit (amplification of noise in the values) raises the drop threshold.
   for (Real drop = 0.03; drop < 0.5; drop *= 2) {
-    const auto kept_monomials = monomial_;
-    const auto kept_coefficients = coefficient_;
-    if (!fit_rows(degree, drop)) {
-      monomial_ = kept_monomials, coefficient_ = kept_coefficients;
-      break;
-    }
+    if (!fit_rows(degree, drop)) break;
     ok = true;
     Real sx = 0, sy = 0;
     for (std::size_t i = 0; i < n; ++i) sx += std::abs(coefficient_[0][i]), sy += std::abs(coefficient_[1][i]);
     if (nearest_ * std::max(sx / hx_, sy / hy_) <= 8) break;
   }
   // A collinear patch carries no information: every derivative is zero.
-  if (!ok && !fit_rows(1, 1e-6)) monomial_.clear(), coefficient_.clear();
+  if (!ok && !fit_rows(1, 1e-6)) coefficient_.clear();
   row_x_.assign(n + 1, 0), row_y_.assign(n + 1, 0);
   if (coefficient_.empty()) return;
   for (std::size_t i = 0; i < n; ++i) {
@@ -158,22 +154,6 @@ void SurfaceFit::fit(int degree) {
     row_x_[0] -= row_x_[i + 1], row_y_[0] -= row_y_[i + 1];
     slope_x_ += row_x_[i + 1] * z_[i], slope_y_ += row_y_[i + 1] * z_[i];
   }
-}
-
-std::vector<Real> SurfaceFit::value_row(const Vec3& x, Real& rise) const {
-  std::vector<Real> row(x_.size() + 1, 0);
-  const Vec3 d = x - origin_;
-  const Real u = hx_ > 0 ? dot(d, a_) / hx_ : 0, v = hy_ > 0 ? dot(d, b_) / hy_ : 0;
-  row[0] = 1;
-  rise = -dot(d, n_);
-  for (std::size_t k = 0; k < monomial_.size(); ++k) {
-    const Real m = power(u, monomial_[k][0]) * power(v, monomial_[k][1]);
-    for (std::size_t i = 0; i < x_.size(); ++i) {
-      const Real w = m * coefficient_[k][i];
-      row[i + 1] += w, row[0] -= w, rise += w * z_[i];
-    }
-  }
-  return row;
 }
 
 }  // namespace sherd

@@ -1,8 +1,6 @@
 // Polynomial fits on a patch of the surface around a vertex: tangential derivatives of whatever lives at the vertices
 // (design notes, thin-walls section 7, steps 1 to 3). They carry the stress recovery and the cubic displacement.
 #pragma once
-#include <array>
-
 #include "engine/mesh/surface_corners.h"
 
 namespace sherd {
@@ -32,8 +30,6 @@ class SurfaceFit {
   const Vec3& a() const { return a_; }
   const Vec3& b() const { return b_; }
   const Vec3& normal() const { return n_; }
-  // Row of the value at x; `rise`: how far the fitted surface lies above x along the normal, m.
-  std::vector<Real> value_row(const Vec3& x, Real& rise) const;
 
  private:
   void fit(int degree);
@@ -43,8 +39,7 @@ class SurfaceFit {
   std::vector<std::uint32_t> patch_;
   std::vector<Real> x_, y_, z_, weight_;  // of patch vertices 1 ..., x and y in units of hx, hy
   Real hx_ = 0, hy_ = 0, nearest_ = 0;
-  std::vector<std::array<int, 2>> monomial_;    // kept exponents
-  std::vector<std::vector<Real>> coefficient_;  // per kept monomial, over patch vertices 1 ...
+  std::vector<std::vector<Real>> coefficient_;  // of X and Y, over patch vertices 1 ...; empty when unresolved
   std::vector<Real> row_x_, row_y_;
   Real slope_x_ = 0, slope_y_ = 0;
 };

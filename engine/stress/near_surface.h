@@ -12,7 +12,7 @@ namespace sherd {
 Sym3 interpolate_corners(const PanelFrame& panel, const SurfaceRecovery& recovery,
                          const std::vector<Sym3>& corner_stress, std::uint32_t face, const Vec3& x);
 
-// Stress at x: `interior` from a quarter of the local edge length below the surface on, above it a linear transition to
+// Stress at x: `interior` from 0.03 local edge lengths below the surface on, above it a linear transition to
 // field.on_face() at the closest surface point. Points outside get the value there.
 Sym3 blend_near_surface(const StressField& field, const TriangleBvh& bvh, const Boundary& boundary, const Vec3& x,
                         const std::function<Sym3(const Vec3&)>& interior);

@@ -9,6 +9,12 @@
 #include "kernels/quadrature/gauss.h"
 
 namespace sherd {
+namespace {
+
+constexpr Real kPull = 0.1;  // towards the centroid, of the barycentric coordinates
+
+}  // namespace
+
 StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recovery, const TriangleBvh& bvh,
                          const Load& load, const ParticularSolution& particular, const ElasticSolution& solution)
     : body_(body),
@@ -51,26 +57,40 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
   }
 }
 
-Sym3 StressState::interior(const Vec3& x) const {
+Mat3 StressState::displacement_gradient(const Vec3& x, std::uint32_t face) const {
   const Boundary& b = body_.boundary();
   const Elastic& m = body_.material();
-  const QuadratureOptions& o = body_.options().quadrature;
   Mat3 g;
   for (std::size_t t = 0; t < b.panels.size(); ++t)
-    g += elements_[t].gradient_at(b.panels[t], x, m, std::sqrt(b.near2[t]), std::sqrt(b.middle2[t]));
+    g += elements_[t].gradient_at(b.panels[t], x, m, std::sqrt(b.near2[t]), std::sqrt(b.middle2[t]),
+                                  t == face ? Side::kInterior : Side::kAway);
   for (std::size_t i = 0; i < load_panels_.size(); ++i)
-    g += layer_gradient(load_panels_[i], x, load_traction_[i], m, o).kelvin;
-  return kelvin::hooke(g, m) + particular_.stress(x);
+    g += layer_gradient(load_panels_[i], x, load_traction_[i], m, body_.options().quadrature).kelvin;
+  return g;
+}
+
+Sym3 StressState::interior(const Vec3& x) const {
+  return kelvin::hooke(displacement_gradient(x, kNone), body_.material()) + particular_.stress(x);
 }
 
 Sym3 StressState::on_face(std::uint32_t face, const Vec3& x) const {
   const Boundary& b = body_.boundary();
   const PanelFrame& f = b.panels[face];
-  const Real s = std::clamp(dot(f.shape_gradient(1), x - f.vertex[0]), 0.0, 1.0),
-             t = std::clamp(dot(f.shape_gradient(2), x - f.vertex[0]), 0.0, 1.0 - s);
-  const Vec3 traction = elements_[face].traction_at(s, t) + traction_at(patch_load_, b.mesh, x, face);
-  return surface_stress(elements_[face].surface_gradient(f, s, t), f.normal, traction, body_.material()) +
-         particular_.stress(x);
+  const Elastic& m = body_.material();
+  std::array<Real, 3> l{};
+  l[1] = std::clamp(dot(f.shape_gradient(1), x - f.vertex[0]), 0.0, 1.0);
+  l[2] = std::clamp(dot(f.shape_gradient(2), x - f.vertex[0]), 0.0, 1.0 - l[1]);
+  l[0] = 1 - l[1] - l[2];
+  // The limit of Somigliana's gradient sees the kinks of the polyhedron, which the fits smooth over; at the edges it is
+  // logarithmically infinite, so that it is taken a little inside and moved with the element's own gradient.
+  std::array<Real, 3> in{};
+  for (std::size_t k = 0; k < 3; ++k) in[k] = (l[k] + kPull) / (1 + 3 * kPull);
+  const Vec3 y = f.vertex[0] * in[0] + f.vertex[1] * in[1] + f.vertex[2] * in[2];
+  const ElementField& e = elements_[face];
+  Mat3 g = displacement_gradient(y, face);
+  g = g - outer(g * f.normal, f.normal) + e.surface_gradient(f, l[1], l[2]) - e.surface_gradient(f, in[1], in[2]);
+  const Vec3 traction = e.traction_at(l[1], l[2]) + traction_at(patch_load_, b.mesh, x, face);
+  return surface_stress(g, f.normal, traction, m) + particular_.stress(x);
 }
 
 void StressState::evaluate(const Vec3Column& points, std::vector<Sym3>& out) const {

@@ -21,16 +21,18 @@ class StressState final : public StressField {
   // Total displacement per vertex up to a rigid motion, m.
   const Vec3Column& displacement() const { return displacement_; }
 
-  // Total stress at points of the closed solid: Somigliana's gradient below a quarter of the local edge length, blended
+  // Total stress at points of the closed solid: Somigliana's gradient below 0.03 local edge lengths, blended
   // linearly into the surface value above. Points outside get the value of the closest surface point. Parallel.
   void evaluate(const Vec3Column& points, std::vector<Sym3>& out) const override;
   // Somigliana's gradient alone: any point inside, no blending; outside it gives the particular solution alone.
   Sym3 interior(const Vec3& x) const;
-  // From the cubic element's gradient and the known traction: the stress of the flat face, not smoothed over its
-  // neighbours.
+  // Stress of the flat face: Somigliana's gradient in the limit from inside, with the known traction on the face.
   Sym3 on_face(std::uint32_t face, const Vec3& x) const override;
 
  private:
+  // Of the homogeneous problem at x; `face`: the face x lies on, for the limit from inside, or kNone.
+  Mat3 displacement_gradient(const Vec3& x, std::uint32_t face) const;
+
   const ElasticBody& body_;
   const SurfaceRecovery& recovery_;
   const TriangleBvh& bvh_;
