@@ -9,6 +9,7 @@ namespace sherd {
 // Fills `out` (zeros, one point a vertex). Parallel; the same bits for any number of threads. Takes up to 64 MiB
 // besides.
 template <class Scalar>
-void assemble_direct(const OperatorRows& operator_rows, const Testing& testing, DenseOperator<Scalar>& out);
+void assemble_direct(const Boundary& boundary, const Reconstruction& reconstruction, Real nu, const Testing& testing,
+                     DenseOperator<Scalar>& out);
 
 }  // namespace sherd

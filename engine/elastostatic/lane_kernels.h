@@ -81,10 +81,8 @@ struct LaneKernels {
                   double* total);
   // nodes -> vertices (added to), with `corners` (2 kLaneBlock numbers each) as workspace.
   void (*gather)(const LaneGather&, const double* nodes, double* corners, double* vertices);
-  // out[3][width] += sum over the panels p of a batch and their rows r of weight[p][i][r] * rows[p][r][width]; rows of
-  // a panel are `stride` apart.
-  void (*add_rows)(const double* const* panels, const double* weights, std::size_t count, std::size_t rows,
-                   std::size_t stride, std::size_t width, double* out);
+  // Block `in` times weight[a] to each of the ten nodes local[a].
+  void (*add_weighted)(const double* in, const double* weight, const std::uint32_t* local, double* nodes);
 };
 
 // The fastest this processor runs.

@@ -173,37 +173,13 @@ void gather(const LaneGather& g, const double* nodes, double* corners, double* v
   }
 }
 
-void add_rows(const double* const* panels, const double* weights, std::size_t count, std::size_t rows,
-              std::size_t stride, std::size_t width, double* out) {
-  constexpr std::size_t kRegisters = SHERD_LANE_WIDTH == 8 ? 8 : 4, kStrip = kRegisters * kWidth;
-  std::size_t c = 0;
-  for (; c + kStrip <= width; c += kStrip) {
-    V sum[3][kRegisters];
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t k = 0; k < kRegisters; ++k) sum[i][k] = load(out + i * width + c + k * kWidth);
-    for (std::size_t p = 0; p < count; ++p)
-      for (std::size_t r = 0; r < rows; ++r) {
-        const double *in = panels[p] + r * stride + c, *w = weights + 3 * rows * p;
-        for (std::size_t k = 0; k < kRegisters; ++k) {
-          const V v = load(in + k * kWidth);
-          sum[0][k] += v * w[r], sum[1][k] += v * w[rows + r], sum[2][k] += v * w[2 * rows + r];
-        }
-      }
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t k = 0; k < kRegisters; ++k) store(out + i * width + c + k * kWidth, sum[i][k]);
-  }
-  for (; c < width; ++c)
-    for (std::size_t i = 0; i < 3; ++i) {
-      double sum = out[i * width + c];
-      for (std::size_t p = 0; p < count; ++p)
-        for (std::size_t r = 0; r < rows; ++r) sum += panels[p][r * stride + c] * weights[3 * rows * p + i * rows + r];
-      out[i * width + c] = sum;
-    }
+void add_weighted(const double* in, const double* weight, const std::uint32_t* local, double* nodes) {
+  for (int a = 0; a < 10; ++a) add_block(nodes + kLaneBlock * local[a], in, weight[a]);
 }
 
 }  // namespace
 
 extern const LaneKernels SHERD_LANE_KERNELS;
-const LaneKernels SHERD_LANE_KERNELS = {three_points, six_points, moments, gather, add_rows};
+const LaneKernels SHERD_LANE_KERNELS = {three_points, six_points, moments, gather, add_weighted};
 
 }  // namespace sherd

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 
+#include "engine/elastostatic/source_block.h"
 #include "kernels/quadrature/gauss.h"
 
 namespace sherd {
@@ -78,111 +80,7 @@ LaneConstants make_constants(Real nu) {
   return c;
 }
 
-void copy(const Vec3& v, double* out) {
-  for (int k = 0; k < 3; ++k) out[k] = v[k];
-}
-
-LanePanel make_lane_panel(const PanelFrame& f) {
-  LanePanel p;
-  const auto at = [&](const TrianglePoint& g) { return f.vertex[0] * g.a + f.vertex[1] * g.b + f.vertex[2] * g.c; };
-  for (std::size_t q = 0; q < 3; ++q) copy(at(kGauss3[q]), p.three[q]);
-  for (std::size_t q = 0; q < 6; ++q) copy(at(kGauss6[q]), p.six[q]);
-  copy(f.normal, p.normal), copy(f.shape_gradient(1), p.gradient_s), copy(f.shape_gradient(2), p.gradient_t);
-  p.area = f.area;
-  return p;
-}
-
-// Panels that are near each other, with the nodes and corners they touch numbered locally, so that what one group of
-// targets accumulates stays in the cache.
-struct SourceBlock {
-  std::vector<std::uint32_t> panels;
-  std::vector<LanePanel> lane_panels;
-  std::vector<std::array<std::uint32_t, cubic::kNodes>> local;  // per panel
-  std::vector<LaneGather::Node> nodes;
-  std::vector<LaneGather::Entry> entries;
-  std::vector<LaneGather::Term> terms;
-  std::vector<LaneGather::Corner> corners;
-  std::vector<LaneGather::Gradient> gradients;
-  LaneGather gather() const {
-    return {nodes.data(), nodes.size(), entries.data(), terms.data(), corners.data(), corners.size(), gradients.data()};
-  }
-};
-
-// Order of the panels along a space-filling curve (Morton).
-std::vector<std::uint32_t> curve_order(const Boundary& b) {
-  const Box box = bounding_box(b.mesh);
-  const Real size = std::max(box.diagonal(), 1e-300);
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> key(b.panels.size());
-  for (std::uint32_t t = 0; t < key.size(); ++t) {
-    const Vec3 p = (b.centroid[t] - box.low) * (1023 / size);
-    std::uint64_t code = 0;
-    for (int bit = 9; bit >= 0; --bit)
-      for (int k = 0; k < 3; ++k) code = 2 * code + ((static_cast<std::uint64_t>(p[k]) >> bit) & 1);
-    key[t] = {code, t};
-  }
-  std::sort(key.begin(), key.end());
-  std::vector<std::uint32_t> order(key.size());
-  for (std::size_t i = 0; i < key.size(); ++i) order[i] = key[i].second;
-  return order;
-}
-
 constexpr std::size_t kBlockPanels = 128;
-
-class BlockBuilder {
- public:
-  BlockBuilder(const Boundary& b, const Reconstruction& r)
-      : b_(b), r_(r), node_of_(r.node_count(), kNone), corner_of_(r.corner_count(), kNone) {}
-
-  SourceBlock build(std::span<const std::uint32_t> panels) {
-    SourceBlock block;
-    std::vector<std::uint32_t> nodes, corners;
-    for (const std::uint32_t t : panels) {
-      block.panels.push_back(t), block.lane_panels.push_back(make_lane_panel(b_.panels[t]));
-      std::array<std::uint32_t, cubic::kNodes> local;
-      for (std::size_t a = 0; a < cubic::kNodes; ++a) local[a] = number(r_.nodes(t)[a], node_of_, nodes);
-      block.local.push_back(local);
-    }
-    for (const std::uint32_t node : nodes) add_node(block, node, corners);
-    for (const std::uint32_t c : corners) add_corner(block, c);
-    for (const std::uint32_t node : nodes) node_of_[node] = kNone;
-    for (const std::uint32_t c : corners) corner_of_[c] = kNone;
-    return block;
-  }
-
- private:
-  static std::uint32_t number(std::uint32_t global, std::vector<std::uint32_t>& of, std::vector<std::uint32_t>& list) {
-    if (of[global] == kNone) of[global] = static_cast<std::uint32_t>(list.size()), list.push_back(global);
-    return of[global];
-  }
-  void add_node(SourceBlock& block, std::uint32_t node, std::vector<std::uint32_t>& corners) {
-    LaneGather::Node out{};
-    out.first_entry = static_cast<std::uint32_t>(block.entries.size());
-    out.first_term = static_cast<std::uint32_t>(block.terms.size());
-    out.vertex = node < r_.vertex_count() ? node : kNone;
-    if (out.vertex == kNone) {
-      for (const Reconstruction::Entry& e : r_.entries(node)) block.entries.push_back({e.vertex, e.weight});
-      for (const Reconstruction::Term& t : r_.terms(node))
-        block.terms.push_back({number(t.corner, corner_of_, corners), t.x, t.y, t.z});
-    }
-    out.last_entry = static_cast<std::uint32_t>(block.entries.size());
-    out.last_term = static_cast<std::uint32_t>(block.terms.size());
-    block.nodes.push_back(out);
-  }
-  void add_corner(SourceBlock& block, std::uint32_t corner) {
-    LaneGather::Corner out{};
-    out.first = static_cast<std::uint32_t>(block.gradients.size());
-    for (const Reconstruction::GradientEntry& g : r_.gradient(corner)) block.gradients.push_back({g.vertex, g.x, g.y});
-    out.last = static_cast<std::uint32_t>(block.gradients.size());
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        out.frame_x[3 * i + j] = r_.frame(corner).x[i][j], out.frame_y[3 * i + j] = r_.frame(corner).y[i][j];
-    block.corners.push_back(out);
-  }
-
-  const Boundary& b_;
-  const Reconstruction& r_;
-  std::vector<std::uint32_t> node_of_, corner_of_;
-};
 
 }  // namespace
 
@@ -195,8 +93,10 @@ struct OperatorRows::Impl {
 
   Impl(const Boundary& b, const Reconstruction& r, Real nu)
       : boundary(b), reconstruction(r), constants(make_constants(nu)) {
-    const std::vector<std::uint32_t> order = curve_order(b);
-    BlockBuilder builder(b, r);
+    std::vector<std::uint32_t> order(b.panels.size());
+    std::iota(order.begin(), order.end(), 0u);
+    order = curve_order(b, std::move(order));
+    SourceBlockBuilder builder(b, r, false);
     for (std::size_t first = 0; first < order.size(); first += kBlockPanels)
       blocks.push_back(builder.build({order.data() + first, std::min(kBlockPanels, order.size() - first)}));
   }
@@ -248,7 +148,7 @@ void add_near_panel(const Boundary& b, const TargetGroup& g, std::uint32_t t, co
     if (!near) continue;
     const Triangle& corner = b.mesh.triangles[t];
     const bool on =
-        g.panel == t ||
+        g.panel[k] == t ||
         (g.vertex[k] != kNone && (corner[0] == g.vertex[k] || corner[1] == g.vertex[k] || corner[2] == g.vertex[k]));
     closed_form(f, g.x[k], on ? Side::kOnSurface : Side::kAway, c, k, moments);
   }
@@ -258,24 +158,24 @@ void add_near_panel(const Boundary& b, const TargetGroup& g, std::uint32_t t, co
 
 // The term - u(x) D[1](x), u(x) the vertex value or the shape functions at a point of a panel.
 void subtract_own(const Reconstruction& r, const TargetGroup& g, OperatorRows::Workspace& w) {
-  if (g.panel == kNone) {
-    for (std::size_t k = 0; k < g.count; ++k)
+  for (std::size_t k = 0; k < g.count; ++k) {
+    if (g.vertex[k] != kNone) {
       for (std::size_t i = 0; i < 3; ++i) w.vertex[kLaneBlock * g.vertex[k] + 4 * i * kLanes + k] -= w.total[k];
-    return;
-  }
-  for (std::size_t a = 0; a < cubic::kNodes; ++a)
-    for (const auto& [v, block] : r.row(r.nodes(g.panel)[a]))
-      for (std::size_t k = 0; k < g.count; ++k) {
-        const Real weight = w.total[k] * cubic::evaluate(cubic::kShape[a], g.s[k], g.t[k]);
+      continue;
+    }
+    for (std::size_t a = 0; a < cubic::kNodes; ++a) {
+      const Real weight = w.total[k] * cubic::evaluate(cubic::kShape[a], g.s[k], g.t[k]);
+      for (const auto& [v, block] : r.row(r.nodes(g.panel[k])[a]))
         for (std::size_t i = 0; i < 3; ++i)
           for (std::size_t j = 0; j < 3; ++j)
             w.vertex[kLaneBlock * v + (3 * i + j) * kLanes + k] -= weight * block.m[i][j];
-      }
+    }
+  }
 }
 
 }  // namespace
 
-void OperatorRows::evaluate(const TargetGroup& g, Workspace& w, std::span<Real> rows) const {
+std::span<const double> OperatorRows::evaluate(const TargetGroup& g, Workspace& w) const {
   const Boundary& b = impl_->boundary;
   const LaneConstants& c = impl_->constants;
   const LaneKernels& kernels = impl_->kernels;
@@ -302,13 +202,7 @@ void OperatorRows::evaluate(const TargetGroup& g, Workspace& w, std::span<Real> 
     kernels.gather(block.gather(), w.node.data(), w.corner.data(), w.vertex.data());
   }
   subtract_own(impl_->reconstruction, g, w);
-  const std::size_t columns = 3 * vertices;
-  for (std::size_t k = 0; k < g.count; ++k)
-    for (std::size_t i = 0; i < 3; ++i) {
-      Real* row = rows.data() + (3 * k + i) * columns;
-      for (std::size_t v = 0; v < vertices; ++v)
-        for (std::size_t j = 0; j < 3; ++j) row[3 * v + j] = w.vertex[kLaneBlock * v + (3 * i + j) * kLanes + k];
-    }
+  return w.vertex;
 }
 
 }  // namespace sherd

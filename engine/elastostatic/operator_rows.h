@@ -16,9 +16,9 @@ namespace sherd {
 struct TargetGroup {
   std::size_t count = 0;  // lanes in use; the others repeat the first
   std::array<Vec3, kLanes> x;
-  std::array<std::uint32_t, kLanes> vertex;  // the vertex each target is, or kNone
-  std::uint32_t panel = kNone;               // the panel all targets lie in, when they are not vertices
-  std::array<Real, kLanes> s{}, t{};         // their coordinates in it (moments.h)
+  std::array<std::uint32_t, kLanes> vertex;  // the vertex each target is, or kNone and then
+  std::array<std::uint32_t, kLanes> panel;   // the panel it lies in, at
+  std::array<Real, kLanes> s{}, t{};         // these coordinates (moments.h)
 };
 
 class OperatorRows {
@@ -28,8 +28,9 @@ class OperatorRows {
 
   struct Workspace;
   std::shared_ptr<Workspace> make_workspace() const;  // one per thread at a time
-  // rows: 3 kLanes rows of 3 nv entries, row major; row 3 k + i is component i at target k. Overwritten.
-  void evaluate(const TargetGroup& targets, Workspace& workspace, std::span<Real> rows) const;
+  // One lane block (lane_kernels.h) a vertex: entry (i, j) of lane k is what component j there adds to component i at
+  // target k. Valid until the workspace is used again.
+  std::span<const double> evaluate(const TargetGroup& targets, Workspace& workspace) const;
 
  private:
   struct Impl;

@@ -164,6 +164,25 @@ void Reconstruction::apply(const Vec3Column& u, Vec3Column& out) const {
   });
 }
 
+Vec3Column Reconstruction::apply_transpose(const Vec3Column& nodes) const {
+  Vec3Column out(vertices_), gx(corner_count()), gy(corner_count());
+  for (std::uint32_t i = 0; i < node_count(); ++i) {
+    const Vec3 f = nodes[i];
+    if (i < vertices_) {
+      out.add(i, f);
+      continue;
+    }
+    for (const Entry& e : entries(i)) out.add(e.vertex, f * e.weight);
+    for (const Term& t : terms(i)) {
+      gx.add(t.corner, f * t.x + transpose(frames_[t.corner].x) * f * t.z);
+      gy.add(t.corner, f * t.y + transpose(frames_[t.corner].y) * f * t.z);
+    }
+  }
+  for (std::uint32_t c = 0; c < corner_count(); ++c)
+    for (const GradientEntry& g : gradient(c)) out.add(g.vertex, gx[c] * g.x + gy[c] * g.y);
+  return out;
+}
+
 std::vector<std::pair<std::uint32_t, Mat3>> Reconstruction::row(std::uint32_t node) const {
   if (node < vertices_) return {{node, Mat3::identity()}};
   std::map<std::uint32_t, Mat3> sum;

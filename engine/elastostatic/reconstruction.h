@@ -56,6 +56,8 @@ class Reconstruction {
 
   // Node values of a vertex field.
   void apply(const Vec3Column& vertex_values, Vec3Column& node_values) const;
+  // Its transpose: vertex loads of node loads.
+  Vec3Column apply_transpose(const Vec3Column& node_values) const;
   // A node's value as 3x3 blocks over vertices, ascending; any node.
   std::vector<std::pair<std::uint32_t, Mat3>> row(std::uint32_t node) const;
 

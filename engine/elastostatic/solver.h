@@ -19,6 +19,7 @@ struct ElasticOptions {
   ReconstructionOptions reconstruction;
   TestingRule testing = TestingRule::kAuto;
   Real thin_ratio = 0.6;
+  Real six_point_ratio = 1.2;  // above it six Gauss points a panel, below three
   QuadratureOptions quadrature;
   KrylovOptions krylov;
   DeflationOptions deflation;

@@ -1,86 +1,93 @@
 #include "engine/elastostatic/testing.h"
 
 #include <algorithm>
-#include <map>
 
+#include "engine/elastostatic/source_block.h"
 #include "kernels/core/parallel.h"
 #include "kernels/quadrature/gauss.h"
 
 namespace sherd {
 
-Testing::Testing(const Boundary& boundary, const Reconstruction& reconstruction, const std::vector<bool>& galerkin)
-    : boundary_(boundary), reconstruction_(reconstruction), galerkin_(galerkin) {
-  for (std::uint32_t v = 0; v < galerkin_.size(); ++v)
-    if (!galerkin_[v]) collocated_.push_back(v);
-  if (collocated_.size() == galerkin_.size()) return;
-  // A panel is needed when a Petrov-Galerkin row's shape function reaches it.
-  std::vector<char> needed(boundary.panels.size(), 0);
-  parallel_for(needed.size(), 64, [&](std::size_t t) {
-    for (const std::uint32_t node : reconstruction_.nodes(t))
-      for (const auto& [v, block] : reconstruction_.row(node)) needed[t] = needed[t] || galerkin_[v];
-  });
-  for (std::uint32_t t = 0; t < needed.size(); ++t)
-    if (needed[t]) panels_.push_back(t);
-}
-
-std::size_t Testing::galerkin_count() const {
-  return galerkin_.size() - collocated_.size();
-}
-
-TargetGroup Testing::group(std::size_t i) const {
-  TargetGroup g;
-  if (i < vertex_groups()) {
-    g.count = std::min(kLanes, collocated_.size() - i * kLanes);
-    for (std::size_t k = 0; k < g.count; ++k) {
-      g.vertex[k] = collocated_[i * kLanes + k];
-      g.x[k] = boundary_.mesh.vertices[g.vertex[k]];
+Testing::Testing(const Boundary& boundary, const Reconstruction& reconstruction, const std::vector<VertexTest>& tests)
+    : boundary_(boundary), reconstruction_(reconstruction), tests_(tests) {
+  for (std::uint32_t v = 0; v < tests_.size(); ++v)
+    if (!galerkin(v)) collocated_.push_back(v);
+  if (collocated_.size() == tests_.size()) return;
+  std::vector<VertexTest> rule(boundary.panels.size(), VertexTest::kCollocation);
+  const Reconstruction& r = reconstruction;
+  parallel_for(rule.size(), 64, [&](std::size_t t) {
+    const auto see = [&](std::uint32_t v) { rule[t] = std::max(rule[t], tests_[v]); };
+    for (const std::uint32_t node : r.nodes(t)) {
+      if (node < r.vertex_count()) {
+        see(node);
+        continue;
+      }
+      for (const Reconstruction::Entry& e : r.entries(node)) see(e.vertex);
+      for (const Reconstruction::Term& m : r.terms(node))
+        for (const Reconstruction::GradientEntry& g : r.gradient(m.corner)) see(g.vertex);
     }
-    return g;
+  });
+  std::vector<std::uint32_t> panels;
+  for (std::uint32_t t = 0; t < rule.size(); ++t)
+    if (rule[t] != VertexTest::kCollocation) panels.push_back(t);
+  for (const std::uint32_t t : curve_order(boundary, std::move(panels))) {
+    const auto add = [&](const auto& points) {
+      for (const TrianglePoint& p : points) gauss_.push_back({t, p.b, p.c, p.weight * boundary.panels[t].area});
+    };
+    if (rule[t] == VertexTest::kSixPoints)
+      add(kGauss6);
+    else
+      add(kGauss3);
   }
-  g.count = kPoints, g.panel = panels_[i - vertex_groups()];
-  const PanelFrame& f = boundary_.panels[g.panel];
-  for (std::size_t k = 0; k < kPoints; ++k) {
-    const TrianglePoint& p = kGauss6[k];
-    g.vertex[k] = kNone, g.s[k] = p.b, g.t[k] = p.c;
-    g.x[k] = f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c;
+}
+
+TargetGroup Testing::vertex_group(std::size_t i) const {
+  TargetGroup g;
+  g.count = std::min(kLanes, collocated_.size() - i * kLanes);
+  for (std::size_t k = 0; k < g.count; ++k) {
+    g.vertex[k] = collocated_[i * kLanes + k], g.panel[k] = kNone;
+    g.x[k] = boundary_.mesh.vertices[g.vertex[k]];
   }
   return g;
 }
 
-std::vector<Testing::Weight> Testing::weights(std::uint32_t panel) const {
-  std::map<std::uint32_t, std::array<Mat3, kPoints>> sum;
-  for (std::size_t a = 0; a < cubic::kNodes; ++a) {
-    std::array<Real, kPoints> shape;
-    for (std::size_t k = 0; k < kPoints; ++k) shape[k] = cubic::evaluate(cubic::kShape[a], kGauss6[k].b, kGauss6[k].c);
-    for (const auto& [v, block] : reconstruction_.row(reconstruction_.nodes(panel)[a])) {
-      if (!galerkin_[v]) continue;
-      const Mat3 test = transpose(block) * (boundary_.panels[panel].area / boundary_.vertex_area[v]);
-      auto& at = sum[v];
-      for (std::size_t k = 0; k < kPoints; ++k) at[k] += test * (shape[k] * kGauss6[k].weight);
-    }
+TargetGroup Testing::gauss_group(std::size_t i) const {
+  TargetGroup g;
+  g.count = std::min(kLanes, gauss_.size() - i * kLanes);
+  for (std::size_t k = 0; k < g.count; ++k) {
+    const Point& p = gauss_[i * kLanes + k];
+    const PanelFrame& f = boundary_.panels[p.panel];
+    g.vertex[k] = kNone, g.panel[k] = p.panel, g.s[k] = p.s, g.t[k] = p.t;
+    g.x[k] = f.vertex[0] * (1 - p.s - p.t) + f.vertex[1] * p.s + f.vertex[2] * p.t;
   }
-  std::vector<Weight> out;
-  for (const auto& [v, block] : sum) out.push_back({v, block});
-  return out;
+  return g;
 }
 
 Vec3Column Testing::points() const {
   Vec3Column out;
   for (const std::uint32_t v : collocated_) out.push_back(boundary_.mesh.vertices[v]);
-  for (std::size_t i = 0; i < panels_.size(); ++i) {
-    const TargetGroup g = group(vertex_groups() + i);
-    for (std::size_t k = 0; k < kPoints; ++k) out.push_back(g.x[k]);
+  for (std::size_t i = 0; i < gauss_groups(); ++i) {
+    const TargetGroup g = gauss_group(i);
+    for (std::size_t k = 0; k < g.count; ++k) out.push_back(g.x[k]);
   }
   return out;
 }
 
 Vec3Column Testing::apply(const Vec3Column& values) const {
-  Vec3Column rows(galerkin_.size());
+  Vec3Column nodes(gauss_.empty() ? 0 : reconstruction_.node_count());
+  for (std::size_t i = 0; i < gauss_.size(); ++i) {
+    const Point& p = gauss_[i];
+    for (std::size_t a = 0; a < cubic::kNodes; ++a)
+      nodes.add(reconstruction_.nodes(p.panel)[a],
+                values[collocated_.size() + i] * (p.weight * cubic::evaluate(cubic::kShape[a], p.s, p.t)));
+  }
+  Vec3Column rows(tests_.size());
+  if (!gauss_.empty()) {
+    const Vec3Column tested = reconstruction_.apply_transpose(nodes);
+    for (std::size_t v = 0; v < tests_.size(); ++v)
+      if (galerkin(v)) rows.set(v, tested[v] / boundary_.vertex_area[v]);
+  }
   for (std::size_t i = 0; i < collocated_.size(); ++i) rows.set(collocated_[i], values[i]);
-  for (std::size_t i = 0; i < panels_.size(); ++i)
-    for (const Weight& w : weights(panels_[i]))
-      for (std::size_t k = 0; k < kPoints; ++k)
-        rows.add(w.vertex, w.block[k] * values[collocated_.size() + kPoints * i + k]);
   return rows;
 }
 

@@ -9,40 +9,41 @@
 
 namespace sherd {
 
+// How each vertex is tested.
+enum class VertexTest : std::uint8_t { kCollocation, kThreePoints, kSixPoints };
+
 class Testing {
  public:
-  static constexpr std::size_t kPoints = 6;  // Gauss points a panel
-
-  // galerkin: per vertex, true for a Petrov-Galerkin row.
-  Testing(const Boundary& boundary, const Reconstruction& reconstruction, const std::vector<bool>& galerkin);
-
-  std::size_t vertex_count() const { return galerkin_.size(); }
-  bool galerkin(std::size_t vertex) const { return galerkin_[vertex]; }
-  std::size_t galerkin_count() const;
-  const std::vector<std::uint32_t>& collocated() const { return collocated_; }  // vertices, ascending
-  const std::vector<std::uint32_t>& panels() const { return panels_; }          // whose points are targets, ascending
-
-  // Groups of targets: collocated vertices in eights, then one group a panel of panels().
-  std::size_t group_count() const { return vertex_groups() + panels_.size(); }
-  std::size_t vertex_groups() const { return (collocated_.size() + kLanes - 1) / kLanes; }
-  TargetGroup group(std::size_t i) const;
-
-  // What the values at a panel's points add to each Petrov-Galerkin row they reach.
-  struct Weight {
-    std::uint32_t vertex;
-    std::array<Mat3, kPoints> block;
+  struct Point {
+    std::uint32_t panel;
+    Real s, t;    // coordinates in the panel (moments.h)
+    Real weight;  // of the rule times the panel's area, m^2
   };
-  std::vector<Weight> weights(std::uint32_t panel) const;
 
-  // Right-hand sides: all target points (vertex groups first, then panels) and from values there to rows.
+  // A panel gets the finer rule that any vertex whose shape function reaches it asks for.
+  Testing(const Boundary& boundary, const Reconstruction& reconstruction, const std::vector<VertexTest>& tests);
+
+  bool galerkin(std::size_t vertex) const { return tests_[vertex] != VertexTest::kCollocation; }
+  std::size_t galerkin_count() const { return tests_.size() - collocated_.size(); }
+  const std::vector<std::uint32_t>& collocated() const { return collocated_; }  // vertices, ascending
+  const std::vector<Point>& gauss_points() const { return gauss_; }             // neighbours in the list are neighbours
+
+  // Targets in eights: of the collocated vertices, of the Gauss points.
+  std::size_t vertex_groups() const { return (collocated_.size() + kLanes - 1) / kLanes; }
+  std::size_t gauss_groups() const { return (gauss_.size() + kLanes - 1) / kLanes; }
+  TargetGroup vertex_group(std::size_t i) const;
+  TargetGroup gauss_group(std::size_t i) const;
+
+  // Right-hand sides: all target points, collocated vertices first, and from values there to rows.
   Vec3Column points() const;
   Vec3Column apply(const Vec3Column& values) const;
 
  private:
   const Boundary& boundary_;
   const Reconstruction& reconstruction_;
-  std::vector<bool> galerkin_;
-  std::vector<std::uint32_t> collocated_, panels_;
+  std::vector<VertexTest> tests_;
+  std::vector<std::uint32_t> collocated_;
+  std::vector<Point> gauss_;
 };
 
 }  // namespace sherd

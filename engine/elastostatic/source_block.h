@@ -1,0 +1,48 @@
+// Panels that are near each other as the lane kernels want them, with the nodes, corners and vertices they touch
+// numbered locally, so that what a group of targets accumulates stays in the cache.
+#pragma once
+#include <span>
+
+#include "engine/elastostatic/boundary.h"
+#include "engine/elastostatic/lane_kernels.h"
+#include "engine/elastostatic/reconstruction.h"
+
+namespace sherd {
+
+struct SourceBlock {
+  std::vector<std::uint32_t> panels;
+  std::vector<LanePanel> lane_panels;
+  std::vector<std::array<std::uint32_t, cubic::kNodes>> local;  // per panel
+  std::vector<LaneGather::Node> nodes;
+  std::vector<LaneGather::Entry> entries;
+  std::vector<LaneGather::Term> terms;
+  std::vector<LaneGather::Corner> corners;
+  std::vector<LaneGather::Gradient> gradients;
+  std::vector<std::uint32_t> vertices;  // local -> global, when vertices are numbered locally
+
+  LaneGather gather() const {
+    return {nodes.data(), nodes.size(), entries.data(), terms.data(), corners.data(), corners.size(), gradients.data()};
+  }
+};
+
+// One builder serves many blocks: its tables are sized once and cleaned after each.
+class SourceBlockBuilder {
+ public:
+  SourceBlockBuilder(const Boundary& boundary, const Reconstruction& reconstruction, bool local_vertices);
+  SourceBlock build(std::span<const std::uint32_t> panels);
+
+ private:
+  void add_node(SourceBlock& block, std::uint32_t node, std::vector<std::uint32_t>& corners);
+  void add_corner(SourceBlock& block, std::uint32_t corner);
+  std::uint32_t vertex(SourceBlock& block, std::uint32_t global);
+
+  const Boundary& boundary_;
+  const Reconstruction& reconstruction_;
+  bool local_vertices_;
+  std::vector<std::uint32_t> node_of_, corner_of_, vertex_of_;
+};
+
+// The given panels in order along a space-filling curve (Morton), so that neighbours in the list are neighbours.
+std::vector<std::uint32_t> curve_order(const Boundary& boundary, std::vector<std::uint32_t> panels);
+
+}  // namespace sherd
