@@ -16,7 +16,7 @@ enum class Element { kLinear, kCubic };
 struct ReconstructionOptions {
   Element element = Element::kCubic;
   Real feature_angle = 35;  // degrees; creases break the fits but not the displacement
-  FitOptions fit{3, 4};     // measured: degree 4 halves the error of flat plates and worsens curved shells
+  FitOptions fit;
 };
 
 class Reconstruction {

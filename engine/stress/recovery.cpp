@@ -21,6 +21,7 @@ SurfaceRecovery::SurfaceRecovery(const SurfaceMesh& mesh, const RecoveryOptions&
     c.normal = normalized(cross(c.tangent_x, c.tangent_y));
     c.patch = fit.patch(), c.row_x = fit.row_x(), c.row_y = fit.row_y();
   });
+  if (options.rims) rims_ = convex_rims(mesh, corners);
 }
 
 Sym3 surface_stress(const Mat3& g, const Vec3& n, const Vec3& t, const Elastic& m) {
@@ -38,6 +39,7 @@ Sym3 surface_stress(const Mat3& g, const Vec3& n, const Vec3& t, const Elastic& 
 std::vector<Sym3> SurfaceRecovery::stress(const Vec3Column& displacement, const Vec3Column& traction,
                                           const Elastic& m) const {
   std::vector<Sym3> out(corners_.size());
+  std::vector<Mat3> gradient(corners_.size());
   parallel_for(corners_.size(), 256, [&](std::size_t i) {
     const StressCorner& c = corners_[i];
     Vec3 dx, dy;
@@ -46,8 +48,15 @@ std::vector<Sym3> SurfaceRecovery::stress(const Vec3Column& displacement, const 
       dx += u * c.row_x[k], dy += u * c.row_y[k];
     }
     // Surface gradient G with G tangent_x = dx, G tangent_y = dy, G normal = 0.
-    const Mat3 g = Mat3::from_columns(dx, dy, Vec3{}) * inverse(Mat3::from_columns(c.tangent_x, c.tangent_y, c.normal));
-    out[i] = surface_stress(g, c.normal, traction[i], m);
+    gradient[i] = Mat3::from_columns(dx, dy, Vec3{}) * inverse(Mat3::from_columns(c.tangent_x, c.tangent_y, c.normal));
+    out[i] = surface_stress(gradient[i], c.normal, traction[i], m);
+  });
+  parallel_for(rims_.size(), 64, [&](std::size_t r) {
+    std::vector<RimSide> sides;
+    for (const std::uint32_t c : rims_[r]) sides.push_back({corners_[c].normal, traction[c], gradient[c]});
+    Sym3 s;
+    if (!rim_stress(sides, m, s)) return;
+    for (const std::uint32_t c : rims_[r]) out[c] = s;
   });
   return out;
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/mesh/surface_fit.h"
-#include "kernels/core/symmetric.h"
+#include "engine/stress/rim.h"
 #include "kernels/fundamental/elastic.h"
 
 namespace sherd {
@@ -12,6 +12,7 @@ namespace sherd {
 struct RecoveryOptions {
   Real feature_angle = 35;  // degrees; faces that meet at more belong to different smooth groups
   FitOptions fit;
+  bool rims = true;  // use both tractions at convex sharp edges (rim.h)
 };
 
 // A corner of the surface with its fit: derivative along tangent_x = sum of row_x * value over the patch.
@@ -37,6 +38,7 @@ class SurfaceRecovery {
  private:
   std::vector<StressCorner> corners_;
   std::vector<std::uint32_t> corner_of_;
+  std::vector<Rim> rims_;
 };
 
 }  // namespace sherd
