@@ -25,6 +25,7 @@ class DenseOperator final : public LinearOperator {
   explicit DenseOperator(std::size_t points) : size_(3 * points), matrix_(size_ * size_) {}
   // The three rows of point p, row major.
   std::span<Scalar> rows(std::size_t p) { return {matrix_.data() + 3 * p * size_, 3 * size_}; }
+  std::span<const Scalar> rows(std::size_t p) const { return {matrix_.data() + 3 * p * size_, 3 * size_}; }
   std::size_t size() const override { return size_; }
   void apply(std::span<const Real> x, std::span<Real> y) const override;
   void apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const override;

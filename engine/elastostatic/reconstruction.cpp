@@ -9,8 +9,8 @@
 namespace sherd {
 namespace {
 
-// w = G n from g1 = G (a + slope_x n), g2 = G (b + slope_y n) and Hooke's sigma n = 0:
-//   (n - k slope_x a - k slope_y b) w = -k (a g1 + b g2),  (a - slope_x n) w = -n g1,  (b - slope_y n) w = -n g2
+// w = -G n from g1 = G (a + slope_x n), g2 = G (b + slope_y n) and Hooke's sigma n = 0:
+//   (n - k slope_x a - k slope_y b) w = k (a g1 + b g2),  (a - slope_x n) w = n g1,  (b - slope_y n) w = n g2
 // with k = nu / (1 - nu). The rotation part alone keeps rigid motions exact (design notes, step 4); the rest is the
 // thinning by Poisson's ratio.
 Reconstruction::Frame free_surface_frame(const SurfaceFit& f, Real nu) {

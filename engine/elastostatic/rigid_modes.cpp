@@ -42,6 +42,18 @@ std::array<Real, 6> RigidModes::coefficients(std::span<const Real> x) const {
   return c;
 }
 
+std::array<Real, 6> RigidModes::coefficients_of_unit(std::size_t j) const {
+  std::array<Real, 6> c = row(j);
+  for (Real& v : c) v *= weight_[j / 3];
+  return c;
+}
+
+std::array<Real, 6> RigidModes::row(std::size_t i) const {
+  std::array<Real, 6> c{};
+  for (std::size_t m = 0; m < 6; ++m) c[m] = mode_[m][i];
+  return c;
+}
+
 void CompletedOperator::apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const {
   a_.apply_block(x, count, y);
   const std::size_t n = size();

@@ -26,6 +26,18 @@ std::vector<VertexTest> vertex_tests(const SurfaceMesh& mesh, const ElasticOptio
   return out;
 }
 
+// Walls so thin that the coarse space would need hundreds of iterations: over half a percent of the surface.
+bool has_slender_walls(const SurfaceMesh& mesh) {
+  const std::vector<Real> thickness = wall_thickness(mesh).face, edge = local_edge_length(mesh);
+  Real slender = 0, area = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const Real a = norm(mesh.area_normal2(t));
+    area += a;
+    if (edge[t] > 2.5 * thickness[t]) slender += a;
+  }
+  return slender > 0.005 * area;
+}
+
 }  // namespace
 
 ElasticBody::ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const ElasticOptions& options)
@@ -59,9 +71,45 @@ void ElasticBody::build() {
     const Real d = determinant(block), scale = trace(transpose(block) * block);
     inverse_blocks_[p] = std::abs(d) > 1e-6 * scale * std::sqrt(scale) ? inverse(block) : Mat3::identity();
   }
+  make_factors_ = [this, &a = *dense] {
+    return std::make_unique<FactoredInverse>(a, modes_, CompletedOperator::kShift);
+  };
   operator_ = std::move(dense);
   completed_ = std::make_unique<CompletedOperator>(*operator_, modes_);
-  preconditioner_ = std::make_unique<Deflation>(*completed_, boundary_, inverse_blocks_, options_.deflation);
+  const std::size_t n = operator_->size();
+  const bool factors = options_.preconditioning == Preconditioning::kFactored ||
+                       (options_.preconditioning == Preconditioning::kAuto &&
+                        (n <= 1500 || (n <= 12000 && has_slender_walls(boundary_.mesh))));
+  if (!factors || !factor())
+    deflation_ = std::make_unique<Deflation>(*completed_, boundary_, inverse_blocks_, options_.deflation);
+}
+
+bool ElasticBody::factor() const {
+  const std::lock_guard lock(factoring_);
+  if (!factored_ && FactoredInverse::bytes(operator_->size()) <= options_.max_bytes) factored_ = make_factors_();
+  return factored_ && factored_->ok();
+}
+
+KrylovResult ElasticBody::iterate(std::span<const Real> b, std::span<Real> x, bool& factored) const {
+  KrylovResult first;
+  factored = !deflation_;
+  if (deflation_) {
+    const auto coarse = [&](std::span<const Real> r, std::span<Real> z) { deflation_->apply(r, z); };
+    first = gmres(*completed_, coarse, b, x, options_.krylov);
+    if (first.status == KrylovStatus::kConverged || options_.preconditioning == Preconditioning::kDeflation ||
+        !factor())
+      return first;
+    factored = true;
+    for (const Real v : x)
+      if (!std::isfinite(v)) {
+        std::fill(x.begin(), x.end(), 0);
+        break;
+      }
+  }
+  const auto exact = [&](std::span<const Real> r, std::span<Real> z) { factored_->apply(r, z); };
+  KrylovResult result = gmres(*completed_, exact, b, x, options_.krylov);
+  result.iterations += first.iterations, result.products += first.products;
+  return result;
 }
 
 // Mean stress = integral of x t^T over the boundary / volume, for tractions in balance (divergence theorem).
@@ -108,8 +156,7 @@ ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& p
     s.reason = "the load is not finite";
     return s;
   }
-  const auto precondition = [&](std::span<const Real> r, std::span<Real> z) { preconditioner_->apply(r, z); };
-  s.krylov = gmres(*completed_, precondition, b, x, options_.krylov);
+  s.krylov = iterate(b, x, s.factored);
   // The rigid part of the solution is arbitrary; its coefficient measures what did not balance.
   const std::array<Real, 6> c = modes_.coefficients(x);
   Real rigid2 = 0;

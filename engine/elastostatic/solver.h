@@ -1,9 +1,12 @@
 // The elastostatic stage (paper 4): displacement of the boundary under a load, by the direct formulation.
 #pragma once
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "engine/elastostatic/deflation.h"
+#include "engine/elastostatic/factored.h"
 #include "engine/elastostatic/krylov.h"
 #include "engine/elastostatic/rigid_modes.h"
 #include "engine/elastostatic/single_layer.h"
@@ -15,6 +18,11 @@ namespace sherd {
 // the wall is thick, or all.
 enum class TestingRule { kCollocation, kAuto, kGalerkin };
 
+// kAuto: triangular factors where they cost little (up to 1500 unknowns) or where elements are more than 2.5 times as
+// long as the wall is thick (up to 12,000), a coarse space otherwise, and the factors after all where that does not
+// converge.
+enum class Preconditioning { kAuto, kDeflation, kFactored };
+
 struct ElasticOptions {
   ReconstructionOptions reconstruction;
   TestingRule testing = TestingRule::kAuto;
@@ -23,15 +31,17 @@ struct ElasticOptions {
   QuadratureOptions quadrature;
   KrylovOptions krylov;
   DeflationOptions deflation;
+  Preconditioning preconditioning = Preconditioning::kAuto;
   bool double_storage = false;  // of the dense operator; float storage costs 3e-8 .. 2e-6 of the stress
   std::size_t max_bytes = std::size_t{6} << 30;  // refuse larger dense operators
 };
 
 struct ElasticSolution {
   bool ok = false;
-  std::string reason;       // when not ok
-  Vec3Column displacement;  // of the homogeneous problem at vertices, m (add particular.displacement for the whole)
-  KrylovResult krylov;
+  std::string reason;        // when not ok
+  Vec3Column displacement;   // of the homogeneous problem at vertices, m (add particular.displacement for the whole)
+  KrylovResult krylov;       // iterations and products of all attempts
+  bool factored = false;     // preconditioned by triangular factors
   Real incompatibility = 0;  // |R^T W b'| / |b'|: what the completion absorbed of a load out of balance
 };
 
@@ -59,6 +69,9 @@ class ElasticBody {
  private:
   template <class Scalar>
   void build();
+  // Makes the factors when they are not there yet; false when they do not fit max_bytes or a pivot vanished.
+  bool factor() const;
+  KrylovResult iterate(std::span<const Real> b, std::span<Real> x, bool& factored) const;
 
   Elastic material_;
   ElasticOptions options_;
@@ -69,7 +82,10 @@ class ElasticBody {
   std::unique_ptr<LinearOperator> operator_;
   std::unique_ptr<CompletedOperator> completed_;
   std::vector<Mat3> inverse_blocks_;  // of the diagonal, for the preconditioner
-  std::unique_ptr<Deflation> preconditioner_;
+  std::unique_ptr<Deflation> deflation_;
+  std::function<std::unique_ptr<FactoredInverse>()> make_factors_;
+  mutable std::unique_ptr<FactoredInverse> factored_;
+  mutable std::mutex factoring_;
   std::string reason_;
 };
 
