@@ -1,0 +1,209 @@
+// Laws of the direct operator over reconstructed displacements, and of its lane kernels.
+#include <gtest/gtest.h>
+
+#include "engine/elastostatic/direct_assembly.h"
+#include "engine/elastostatic/source_block.h"
+#include "kernels/core/parallel.h"
+#include "tests/elastostatic/robust_support.h"
+
+namespace sherd {
+namespace {
+
+constexpr QuadratureOptions kExact{1e30, 1e30};
+
+enum class Rows { kCollocation, kGalerkin, kMixed };
+
+std::vector<VertexTest> tests_of(const SurfaceMesh& mesh, Rows rows) {
+  std::vector<VertexTest> out(mesh.vertex_count(),
+                              rows == Rows::kGalerkin ? VertexTest::kSixPoints : VertexTest::kCollocation);
+  if (rows == Rows::kMixed)
+    for (std::size_t v = 0; v < out.size(); ++v) {
+      const Real x = mesh.vertices[v].x;
+      out[v] = x > 0.2 ? VertexTest::kSixPoints : (x > -0.2 ? VertexTest::kThreePoints : VertexTest::kCollocation);
+    }
+  return out;
+}
+
+struct System {
+  Boundary boundary;
+  Reconstruction reconstruction;
+  Testing testing;
+  DenseOperator<double> matrix;
+  System(const SurfaceMesh& mesh, Real nu, Rows rows, const QuadratureOptions& quadrature)
+      : boundary(mesh, quadrature),
+        reconstruction(boundary.mesh, nu, {}),
+        testing(boundary, reconstruction, tests_of(mesh, rows)),
+        matrix(mesh.vertex_count()) {
+    assemble_direct(boundary, reconstruction, nu, testing, matrix);
+  }
+  System(const System&) = delete;
+  System& operator=(const System&) = delete;
+  std::vector<Real> apply(const Vec3Column& u) const {
+    const std::vector<Real> x = interleaved(u);
+    std::vector<Real> y(x.size());
+    matrix.apply(x, y);
+    return y;
+  }
+};
+
+constexpr Rows kAllRows[] = {Rows::kCollocation, Rows::kGalerkin, Rows::kMixed};
+
+// Translations panel by panel; rotations by the closed surface as a whole, so that Gauss rules leave their own error.
+TEST(RobustOperator, AnnihilatesRigidMotionsWithAnyRows) {
+  const SurfaceMesh box = make_box({1, 0.8, 0.9}, 0.3);
+  const auto translation = [](const Vec3&) { return Vec3{0.4, -0.3, 0.9}; };
+  const auto rotation = [](const Vec3& x) { return cross(Vec3{0.2, 0.8, -0.5}, x); };
+  for (const SurfaceMesh& mesh :
+       {box, make_sphere(0.6, 0.3), make_hollow_sphere(1, 0.6, 0.6), with_slivers(box, 6, 1e-4, 2)})
+    for (const Rows rows : kAllRows) {
+      const System exact(mesh, 0.3, rows, kExact), fast(mesh, 0.3, rows, {});
+      const std::size_t n = mesh.triangle_count();
+      // Rounding of some 1e3 terms of order 1.
+      EXPECT_LT(largest(exact.apply(sample(mesh, translation))), 1e-13) << n << " " << int(rows);
+      EXPECT_LT(largest(exact.apply(sample(mesh, rotation))), 1e-13) << n << " " << int(rows);
+      EXPECT_LT(largest(fast.apply(sample(mesh, translation))), 1e-13) << n << " " << int(rows);
+      // 1e-6 of a panel's share of the rotation, below a hundredth, at three edges.
+      EXPECT_LT(largest(fast.apply(sample(mesh, rotation))), 1e-8) << n << " " << int(rows);
+    }
+}
+
+TEST(RobustOperator, SatisfiesSomiglianaExactlyForQuadraticDisplacementsOnFlatFaces) {
+  const SurfaceMesh mesh = make_box({1, 0.8, 0.9}, 0.25);
+  for (const Real nu : {-0.5, 0.3, 0.499}) {
+    const Elastic material{1.5, nu};
+    const QuadraticField field(material, 11);
+    const Load load = traction_load(mesh, [&](const Vec3& x) { return field.stress(x); });
+    for (const Rows rows : kAllRows) {
+      const System a(mesh, nu, rows, kExact);
+      const std::vector<Real> left = a.apply(sample(mesh, [&](const Vec3& x) { return field.displacement(x); }));
+      const std::vector<Real> right = interleaved(a.testing.apply(
+          load_potential(a.boundary, load, ParticularSolution({}, material), material, kExact, a.testing.points())));
+      std::vector<Real> difference(left.size());
+      for (std::size_t i = 0; i < left.size(); ++i) difference[i] = left[i] - right[i];
+      EXPECT_LT(largest(difference), 1e-11 * largest(left)) << "nu " << nu << ", rows " << int(rows);
+    }
+  }
+}
+
+TEST(RobustOperator, FarRulesErrByLessThanTheyPromise) {
+  const SurfaceMesh mesh = make_box({1, 0.8, 0.9}, 0.1);
+  const QuadraticField field({1.0, 0.3}, 11);
+  const Vec3Column u = sample(mesh, [&](const Vec3& x) { return field.displacement(x); });
+  const std::vector<Real> exact = System(mesh, 0.3, Rows::kCollocation, kExact).apply(u);
+  std::vector<Real> fast = System(mesh, 0.3, Rows::kCollocation, {}).apply(u);
+  for (std::size_t i = 0; i < exact.size(); ++i) fast[i] -= exact[i];
+  // Per panel the rules err by at most 2e-5 of a panel's share (boundary.h); smooth fields add them with mixed signs.
+  EXPECT_LT(largest(fast), 2e-5 * largest(exact));
+}
+
+TEST(RobustOperator, SameBitsForAnyNumberOfThreads) {
+  const SurfaceMesh mesh = make_box({1, 0.8, 0.9}, 0.2);
+  Random random(4);
+  Vec3Column u;
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) u.push_back(random_vector(random));
+  std::vector<std::vector<Real>> results;
+  for (const int threads : {1, 2, 4}) {
+    const ThreadLimit limit(threads);
+    results.push_back(System(mesh, 0.3, Rows::kMixed, {}).apply(u));
+  }
+  EXPECT_EQ(results[0], results[1]);
+  EXPECT_EQ(results[0], results[2]);
+}
+
+// Both builds of the lane kernels on one random panel; they differ by the order of fused operations alone.
+class LanePair : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kNodes = 14;
+  LanePanel panel{};
+  LaneTables tables{};
+  LaneConstants constants{0.03, 0.06, 0.08};
+  std::uint32_t local[10] = {3, 0, 7, 1, 13, 5, 6, 2, 11, 9};
+  double x[3 * kLanes], mask[kLanes];
+  Random random{12};
+
+  LanePair() {
+    const auto fill = [&](auto& values) {
+      auto* p = reinterpret_cast<double*>(&values);
+      for (std::size_t i = 0; i < sizeof(values) / sizeof(double); ++i) p[i] = random.uniform(-1, 1);
+    };
+    fill(panel), fill(tables);
+    for (std::size_t i = 0; i < 3 * kLanes; ++i) x[i] = random.uniform(4, 9);
+    for (std::size_t k = 0; k < kLanes; ++k) mask[k] = k % 3 == 0 ? 0 : 1;
+  }
+  std::vector<double> random_values(std::size_t n) {
+    std::vector<double> out(n);
+    for (double& v : out) v = random.uniform(-1, 1);
+    return out;
+  }
+  static void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-13 * (1 + std::abs(a[i])));
+  }
+};
+
+TEST_F(LanePair, BaselineAndWideKernelsAgree) {
+  const LaneKernels &base = baseline_lane_kernels(), &wide = lane_kernels();
+  const auto start = random_values(kNodes * kLaneBlock), sums = random_values(kLanes);
+  LaneMoments moments;
+  for (auto& m : moments.kernel)
+    for (auto& i : m)
+      for (double& v : i) v = random.uniform(-1, 1);
+  for (auto& m : moments.angle)
+    for (double& v : m) v = random.uniform(-1, 1);
+  const auto weight = random_values(10), block = random_values(kLaneBlock);
+  const auto run = [&](const LaneKernels& k) {
+    std::vector<double> nodes = start, total = sums;
+    k.three_points(panel, tables, constants, x, local, nodes.data(), total.data());
+    k.six_points(panel, tables, constants, x, nullptr, local, nodes.data(), total.data());
+    k.six_points(panel, tables, constants, x, mask, local, nodes.data(), total.data());
+    k.moments(panel, tables, moments, local, nodes.data(), total.data());
+    k.add_weighted(block.data(), weight.data(), local, nodes.data());
+    nodes.insert(nodes.end(), total.begin(), total.end());
+    return nodes;
+  };
+  expect_same(run(base), run(wide));
+}
+
+TEST_F(LanePair, AMaskedLaneAddsNothing) {
+  for (const LaneKernels* k : {&baseline_lane_kernels(), &lane_kernels()}) {
+    std::vector<double> nodes(kNodes * kLaneBlock, 0), total(kLanes, 0);
+    k->six_points(panel, tables, constants, x, mask, local, nodes.data(), total.data());
+    for (std::size_t i = 0; i < nodes.size(); ++i) EXPECT_TRUE(mask[i % kLanes] > 0 || nodes[i] == 0) << i;
+    for (std::size_t i = 0; i < kLanes; ++i) EXPECT_EQ(total[i] == 0, mask[i] == 0);
+  }
+}
+
+TEST(RobustOperator, GatherIsTheTransposedReconstruction) {
+  const SurfaceMesh mesh = make_sphere(0.6, 0.25);
+  const Boundary boundary(mesh, {});
+  const Reconstruction r(boundary.mesh, 0.3, {});
+  SourceBlockBuilder builder(boundary, r, false);
+  std::vector<std::uint32_t> panels;
+  for (std::uint32_t t = 20; t < 60; ++t) panels.push_back(t);
+  const SourceBlock block = builder.build(panels);
+  Random random(2);
+  std::vector<double> nodes(kLaneBlock * block.nodes.size());
+  for (double& v : nodes) v = random.uniform(-1, 1);
+  // Row i of the blocks is a load: vertex loads by the transpose of the reconstruction of the same panels.
+  std::vector<std::uint32_t> global(block.nodes.size());
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    for (std::size_t a = 0; a < cubic::kNodes; ++a) global[block.local[i][a]] = r.nodes(panels[i])[a];
+  for (const LaneKernels* k : {&baseline_lane_kernels(), &lane_kernels()}) {
+    std::vector<double> corners(2 * kLaneBlock * block.corners.size()), out(kLaneBlock * mesh.vertex_count(), 0);
+    k->gather(block.gather(), nodes.data(), corners.data(), out.data());
+    for (std::size_t lane = 0; lane < kLanes; lane += 3)
+      for (std::size_t i = 0; i < 3; ++i) {
+        Vec3Column load(r.node_count());
+        for (std::size_t n = 0; n < global.size(); ++n) {
+          const double* b = nodes.data() + kLaneBlock * n + 3 * i * kLanes + lane;
+          load.add(global[n], {b[0], b[kLanes], b[2 * kLanes]});
+        }
+        const Vec3Column expected = r.apply_transpose(load);
+        for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+          for (std::size_t j = 0; j < 3; ++j)
+            EXPECT_NEAR(out[kLaneBlock * v + (3 * i + j) * kLanes + lane], expected[v][static_cast<int>(j)], 1e-12);
+      }
+  }
+}
+
+}  // namespace
+}  // namespace sherd
