@@ -70,6 +70,12 @@ struct LaneGather {
   const Gradient* gradients;
 };
 
+// Point forces: positions and forces as six arrays of `count` numbers each.
+struct LaneSources {
+  const double *x, *y, *z, *fx, *fy, *fz;
+  std::size_t count;
+};
+
 struct LaneKernels {
   // x: three coordinates of the lanes, 3 kLanes. mask: 1 or 0 a lane. local: the panel's ten nodes, indices into
   // `nodes` (kLaneBlock numbers each), which is added to; total (kLanes) gathers the double layer of 1.
@@ -81,6 +87,9 @@ struct LaneKernels {
                   double* total);
   // nodes -> vertices (added to), with `corners` (2 kLaneBlock numbers each) as workspace.
   void (*gather)(const LaneGather&, const double* nodes, double* corners, double* vertices);
+  // u (3 kLanes) += sum over sources of ((3 - 4 nu) f + r (r f) / l^2) / l, `ratio` = 3 - 4 nu; a source at a target
+  // adds nothing.
+  void (*kelvin_sum)(const LaneSources&, double ratio, const double* x, double* u);
   // Block `in` times weight[a] to each of the ten nodes local[a].
   void (*add_weighted)(const double* in, const double* weight, const std::uint32_t* local, double* nodes);
 };

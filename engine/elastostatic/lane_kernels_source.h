@@ -173,6 +173,23 @@ void gather(const LaneGather& g, const double* nodes, double* corners, double* v
   }
 }
 
+void kelvin_sum(const LaneSources& s, double ratio, const double* x, double* u) {
+  for (std::size_t h = 0; h < kLanes; h += kWidth) {
+    const V x0 = load(x + h), x1 = load(x + kLanes + h), x2 = load(x + 2 * kLanes + h);
+    V u0 = load(u + h), u1 = load(u + kLanes + h), u2 = load(u + 2 * kLanes + h);
+    for (std::size_t i = 0; i < s.count; ++i) {
+      const V r0 = x0 - s.x[i], r1 = x1 - s.y[i], r2 = x2 - s.z[i];
+      const V l2 = r0 * r0 + r1 * r1 + r2 * r2;
+      V inverse;
+      for (std::size_t k = 0; k < kWidth; ++k) inverse[k] = l2[k] > 0 ? 1 / std::sqrt(l2[k]) : 0;
+      const V radial = (r0 * s.fx[i] + r1 * s.fy[i] + r2 * s.fz[i]) * inverse * inverse * inverse,
+              direct = inverse * ratio;
+      u0 += direct * s.fx[i] + radial * r0, u1 += direct * s.fy[i] + radial * r1, u2 += direct * s.fz[i] + radial * r2;
+    }
+    store(u + h, u0), store(u + kLanes + h, u1), store(u + 2 * kLanes + h, u2);
+  }
+}
+
 void add_weighted(const double* in, const double* weight, const std::uint32_t* local, double* nodes) {
   for (int a = 0; a < 10; ++a) add_block(nodes + kLaneBlock * local[a], in, weight[a]);
 }
@@ -180,6 +197,6 @@ void add_weighted(const double* in, const double* weight, const std::uint32_t* l
 }  // namespace
 
 extern const LaneKernels SHERD_LANE_KERNELS;
-const LaneKernels SHERD_LANE_KERNELS = {three_points, six_points, moments, gather, add_weighted};
+const LaneKernels SHERD_LANE_KERNELS = {three_points, six_points, moments, gather, kelvin_sum, add_weighted};
 
 }  // namespace sherd

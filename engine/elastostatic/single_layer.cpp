@@ -1,5 +1,8 @@
 #include "engine/elastostatic/single_layer.h"
 
+#include <algorithm>
+
+#include "engine/elastostatic/lane_kernels.h"
 #include "kernels/core/parallel.h"
 #include "kernels/fundamental/kelvin.h"
 #include "kernels/quadrature/gauss.h"
@@ -73,18 +76,25 @@ struct Layer {
     for (std::size_t k = 0; k < q.size(); ++k) u += q[k] * ((3 - 4 * m.nu) * v.inverse[k]) + v.dyad[k] * q[k];
     return u * m.kelvin();
   }
-  Vec3 displacement(const Vec3& x, const Elastic& m) const {
-    Vec3 u;
-    for (std::size_t i = 0; i < near2.size(); ++i) {
-      const Real d2 = distance2(x, centroid[i]);
-      if (d2 > middle2[i])
-        u += far.displacement(3 * i, 3 * i + 3, x, m);
-      else if (d2 > near2[i])
-        u += middle.displacement(7 * i, 7 * i + 7, x, m);
-      else
-        u += closed_form(i, x, m);
+  // The three-point sum over all panels for eight targets at once, corrected where a panel is nearer than that allows.
+  void displacement(const std::array<Vec3, kLanes>& x, std::size_t count, const Elastic& m, Vec3* out) const {
+    double target[3 * kLanes], sum[3 * kLanes] = {};
+    for (std::size_t k = 0; k < kLanes; ++k)
+      for (int i = 0; i < 3; ++i) target[static_cast<std::size_t>(i) * kLanes + k] = x[k < count ? k : 0][i];
+    const Vec3Column &p = far.position, &f = far.force;
+    lane_kernels().kelvin_sum({p.x.data(), p.y.data(), p.z.data(), f.x.data(), f.y.data(), f.z.data(), p.size()},
+                              3 - 4 * m.nu, target, sum);
+    for (std::size_t k = 0; k < count; ++k) {
+      Vec3 u = Vec3{sum[k], sum[kLanes + k], sum[2 * kLanes + k]} * m.kelvin();
+      for (std::size_t i = 0; i < near2.size(); ++i) {
+        const Real d2 = distance2(x[k], centroid[i]);
+        if (d2 > middle2[i]) continue;
+        for (std::size_t q = 3 * i; q < 3 * i + 3; ++q)
+          if (distance2(x[k], p[q]) > 0) u -= kelvin::displacement(x[k] - p[q], f[q], m);
+        u += d2 > near2[i] ? middle.displacement(7 * i, 7 * i + 7, x[k], m) : closed_form(i, x[k], m);
+      }
+      out[k] = u;
     }
-    return u;
   }
 };
 
@@ -116,7 +126,13 @@ Vec3Column load_potential(const Boundary& b, const Load& load, const ParticularS
     for (std::size_t t = 0; t < b.panels.size(); ++t)
       layer.add(b.panels[t], traction_polynomial(b, load, particular, t), false, options);
   Vec3Column potential(points.size());
-  parallel_for(points.size(), 16, [&](std::size_t p) { potential.set(p, layer.displacement(points[p], m)); });
+  parallel_for((points.size() + kLanes - 1) / kLanes, 4, [&](std::size_t group) {
+    std::array<Vec3, kLanes> x, u;
+    const std::size_t first = group * kLanes, count = std::min(kLanes, points.size() - first);
+    for (std::size_t k = 0; k < count; ++k) x[k] = points[first + k];
+    layer.displacement(x, count, m, u.data());
+    for (std::size_t k = 0; k < count; ++k) potential.set(first + k, u[k]);
+  });
   return potential;
 }
 
