@@ -87,9 +87,9 @@ struct LaneKernels {
                   double* total);
   // nodes -> vertices (added to), with `corners` (2 kLaneBlock numbers each) as workspace.
   void (*gather)(const LaneGather&, const double* nodes, double* corners, double* vertices);
-  // u (3 kLanes) += sum over sources of ((3 - 4 nu) f + r (r f) / l^2) / l, `ratio` = 3 - 4 nu; a source at a target
-  // adds nothing.
-  void (*kelvin_sum)(const LaneSources&, double ratio, const double* x, double* u);
+  // u (3 kLanes) += sum over sources of ((3 - 4 nu) f + r (r f) / l^2) / l, `ratio` = 3 - 4 nu; sources whose squared
+  // distance is not above `least` add nothing.
+  void (*kelvin_sum)(const LaneSources&, double ratio, double least, const double* x, double* u);
   // Block `in` times weight[a] to each of the ten nodes local[a].
   void (*add_weighted)(const double* in, const double* weight, const std::uint32_t* local, double* nodes);
 };

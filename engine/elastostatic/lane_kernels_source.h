@@ -173,7 +173,7 @@ void gather(const LaneGather& g, const double* nodes, double* corners, double* v
   }
 }
 
-void kelvin_sum(const LaneSources& s, double ratio, const double* x, double* u) {
+void kelvin_sum(const LaneSources& s, double ratio, double least, const double* x, double* u) {
   for (std::size_t h = 0; h < kLanes; h += kWidth) {
     const V x0 = load(x + h), x1 = load(x + kLanes + h), x2 = load(x + 2 * kLanes + h);
     V u0 = load(u + h), u1 = load(u + kLanes + h), u2 = load(u + 2 * kLanes + h);
@@ -181,7 +181,7 @@ void kelvin_sum(const LaneSources& s, double ratio, const double* x, double* u) 
       const V r0 = x0 - s.x[i], r1 = x1 - s.y[i], r2 = x2 - s.z[i];
       const V l2 = r0 * r0 + r1 * r1 + r2 * r2;
       V inverse;
-      for (std::size_t k = 0; k < kWidth; ++k) inverse[k] = l2[k] > 0 ? 1 / std::sqrt(l2[k]) : 0;
+      for (std::size_t k = 0; k < kWidth; ++k) inverse[k] = l2[k] > least ? 1 / std::sqrt(l2[k]) : 0;
       const V radial = (r0 * s.fx[i] + r1 * s.fy[i] + r2 * s.fz[i]) * inverse * inverse * inverse,
               direct = inverse * ratio;
       u0 += direct * s.fx[i] + radial * r0, u1 += direct * s.fy[i] + radial * r1, u2 += direct * s.fz[i] + radial * r2;

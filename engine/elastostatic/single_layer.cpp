@@ -53,11 +53,13 @@ struct Layer {
   PointForces middle, far;  // seven and three a panel
   Vec3Column centroid;
   std::vector<Real> near2, middle2;  // squared reach of each description, m^2
+  Real least2 = 1e300;               // a target this near a Gauss point is that point (of its own panel), m^2
 
   void add(const PanelFrame& f, const Density& q, bool is_constant, const QuadratureOptions& o) {
     panel.push_back(f), density.push_back(q), constant.push_back(is_constant);
     middle.add(f, kGauss7, q), far.add(f, kGauss3, q);
     centroid.push_back(f.centroid());
+    least2 = std::min(least2, 1e-12 * f.area);
     // Displacements of constants, unlike their gradients, are within 1.4e-5 from two edges on (design notes, section
     // 2).
     const Real reach = is_constant ? std::max(o.closed_form - 1, 0.0) : o.closed_form;
@@ -83,14 +85,14 @@ struct Layer {
       for (int i = 0; i < 3; ++i) target[static_cast<std::size_t>(i) * kLanes + k] = x[k < count ? k : 0][i];
     const Vec3Column &p = far.position, &f = far.force;
     lane_kernels().kelvin_sum({p.x.data(), p.y.data(), p.z.data(), f.x.data(), f.y.data(), f.z.data(), p.size()},
-                              3 - 4 * m.nu, target, sum);
+                              3 - 4 * m.nu, least2, target, sum);
     for (std::size_t k = 0; k < count; ++k) {
       Vec3 u = Vec3{sum[k], sum[kLanes + k], sum[2 * kLanes + k]} * m.kelvin();
       for (std::size_t i = 0; i < near2.size(); ++i) {
         const Real d2 = distance2(x[k], centroid[i]);
         if (d2 > middle2[i]) continue;
         for (std::size_t q = 3 * i; q < 3 * i + 3; ++q)
-          if (distance2(x[k], p[q]) > 0) u -= kelvin::displacement(x[k] - p[q], f[q], m);
+          if (distance2(x[k], p[q]) > least2) u -= kelvin::displacement(x[k] - p[q], f[q], m);
         u += d2 > near2[i] ? middle.displacement(7 * i, 7 * i + 7, x[k], m) : closed_form(i, x[k], m);
       }
       out[k] = u;
