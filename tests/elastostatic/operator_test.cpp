@@ -203,9 +203,58 @@ TEST(ElasticBody, DeflationSolvesThinPlatesWithinSixtyProducts) {
   }
   ElasticOptions options;
   options.krylov.tolerance = 1e-6, options.double_storage = true;
+  options.preconditioning = Preconditioning::kDeflation;
   const ElasticSolution s = ElasticBody(mesh, kMaterial, options).solve(load, ParticularSolution({}, kMaterial));
   EXPECT_TRUE(s.ok) << s.reason;
   EXPECT_LE(s.krylov.products, 60);
+}
+
+TEST(LoadPotential, RulesAgreeWithClosedFormsAtEveryKindOfTarget) {
+  // Targets at vertices and at the Gauss points of either rule, which are source points of the panels' own far rule.
+  const SurfaceMesh mesh = make_plate(1, 1, 0.05, 0.12);
+  const Boundary exact(mesh, kExact), fast(mesh, QuadratureOptions{});
+  const Reconstruction reconstruction(mesh, 0.3, {});
+  Load load;
+  Random random(5);
+  for (std::size_t i = 0; i < 6 * mesh.triangle_count(); ++i)
+    load.quadratic_traction.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+  const ParticularSolution none({}, kMaterial);
+  for (const VertexTest test : {VertexTest::kCollocation, VertexTest::kThreePoints, VertexTest::kSixPoints}) {
+    const Testing testing(exact, reconstruction, std::vector<VertexTest>(mesh.vertex_count(), test));
+    const Vec3Column points = testing.points();
+    const Vec3Column a = load_potential(exact, load, none, kMaterial, kExact, points),
+                     b = load_potential(fast, load, none, kMaterial, QuadratureOptions{}, points);
+    Real error = 0, size = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      error = std::max(error, norm(a[i] - b[i])), size = std::max(size, norm(a[i]));
+    EXPECT_LT(error, 1e-4 * size);  // seven points from three edges on, three from eight: 2e-5 a panel
+  }
+}
+
+TEST(ElasticBody, FactorsAndCoarseSpaceGiveTheSameSolution) {
+  const SurfaceMesh mesh = make_plate(1, 1, 0.05, 0.12);
+  Load load;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const Vec3 c = mesh.centroid(t);
+    load.face_traction.push_back({0, std::abs(mesh.area_normal2(t).y) > 0 ? c.x * c.x - c.z * c.z : 0.0, 0});
+  }
+  ElasticSolution solution[2];
+  for (const bool factored : {false, true}) {
+    ElasticOptions options;
+    options.krylov.tolerance = 1e-10, options.double_storage = true;
+    options.preconditioning = factored ? Preconditioning::kFactored : Preconditioning::kDeflation;
+    const ElasticBody body(mesh, kMaterial, options);
+    solution[factored] = body.solve(load, body.particular(load));
+    ASSERT_TRUE(solution[factored].ok) << solution[factored].reason;
+    EXPECT_EQ(solution[factored].factored, factored);
+  }
+  EXPECT_LE(solution[1].krylov.products, 12);  // two or three refinements of a single-precision solve
+  Real error = 0, size = 0;
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    error = std::max(error, norm(solution[0].displacement[i] - solution[1].displacement[i]));
+    size = std::max(size, norm(solution[0].displacement[i]));
+  }
+  EXPECT_LT(error, 1e-6 * size);  // residual 1e-10, bending of this plate amplifies by some 1e3
 }
 
 TEST(ElasticBody, SameBitsForAnyNumberOfThreads) {
