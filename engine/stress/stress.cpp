@@ -35,19 +35,24 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
   });
   patch_load_.patches = load.patches;
   for (const auto& c : load.panels.corners) load_panels_.push_back(make_panel(c[0], c[1], c[2]));
-  for (std::size_t v = 0; v < displacement_.size(); ++v)
-    displacement_.add(v, particular_.displacement(b.mesh.vertices[v]));
+  // Recovered is what the particular solution leaves: of the corners of a faceted body neither the tangent plane nor the
+  // traction is known exactly, and the mean stress is not to suffer from it.
   Vec3Column traction(recovery.corners().size());
   for (std::size_t c = 0; c < traction.size(); ++c) {
     const SurfaceCorner& corner = recovery.corners()[c];
-    Vec3 force, area;  // of a uniformly stressed polyhedron this is exact
+    const Vec3 x = b.mesh.vertices[corner.vertex];
+    Vec3 force, area;
     for (const std::uint32_t f : corner.faces) {
       const Vec3 normal2 = b.mesh.area_normal2(f);
-      force += traction_at(load, b.mesh, b.mesh.vertices[corner.vertex], f) * norm(normal2), area += normal2;
+      force += traction_at(load, b.mesh, x, f) * norm(normal2), area += normal2;
     }
-    traction.set(c, force / norm(area));
+    traction.set(c, (force - particular_.stress(x) * area) / norm(area));
   }
-  corner_stress_ = recovery.stress(displacement_, traction, body.material());
+  corner_stress_ = recovery.stress(solution.displacement, traction, body.material());
+  for (std::size_t c = 0; c < traction.size(); ++c)
+    corner_stress_[c] += particular_.stress(b.mesh.vertices[recovery.corners()[c].vertex]);
+  for (std::size_t v = 0; v < displacement_.size(); ++v)
+    displacement_.add(v, particular_.displacement(b.mesh.vertices[v]));
   worst_corner_.assign(b.mesh.vertex_count(), kNone);
   std::vector<Real> worst(b.mesh.vertex_count(), 0);
   for (std::uint32_t c = 0; c < corner_stress_.size(); ++c) {
