@@ -29,8 +29,7 @@ class DenseOperator final : public LinearOperator {
   std::size_t size() const override { return size_; }
   void apply(std::span<const Real> x, std::span<Real> y) const override;
   void apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const override;
-  // The 3x3 block (p, p), for block-Jacobi.
-  Mat3 diagonal_block(std::size_t p) const;
+  Mat3 diagonal_block(std::size_t p) const override;
 
  private:
   std::size_t size_;

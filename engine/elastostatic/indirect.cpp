@@ -141,12 +141,7 @@ void IndirectBody::build() {
   const TractionKernel kernel(material_.nu);
   auto dense = std::make_unique<DenseOperator<Scalar>>(
       boundary_.panels.size(), [&](std::size_t p, std::span<Real> rows) { fill_rows(boundary_, kernel, p, rows); });
-  inverse_blocks_.resize(boundary_.panels.size());
-  for (std::size_t p = 0; p < inverse_blocks_.size(); ++p) {
-    const Mat3 block = dense->diagonal_block(p);
-    const Real d = determinant(block), scale = trace(transpose(block) * block);
-    inverse_blocks_[p] = std::abs(d) > 1e-6 * scale * std::sqrt(scale) ? inverse(block) : Mat3::identity();
-  }
+  inverse_blocks_ = inverse_diagonal_blocks(*dense);
   operator_ = std::move(dense);
   completed_ = std::make_unique<CompletedOperator>(*operator_, modes_);
 }

@@ -18,6 +18,12 @@ class LinearOperator {
   // The same for `count` vectors stored row major (entry i of vector j at [i * count + j]); an operator that is bound
   // by memory reads itself once for several of them. Defaults to one product a vector.
   virtual void apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const;
+  // The 3x3 block of point p on itself: the nearest of the near field, which block-Jacobi needs. An operator that
+  // splits into a stored near field and a far field of any kind (a fast multipole method) offers this and apply().
+  virtual Mat3 diagonal_block(std::size_t p) const = 0;
 };
+
+// Their inverses, the identity where a block is nearly singular.
+std::vector<Mat3> inverse_diagonal_blocks(const LinearOperator& a);
 
 }  // namespace sherd

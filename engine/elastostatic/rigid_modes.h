@@ -36,6 +36,7 @@ class CompletedOperator final : public LinearOperator {
     modes_.add(y, modes_.coefficients(x), kShift);
   }
   void apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const override;
+  Mat3 diagonal_block(std::size_t p) const override { return a_.diagonal_block(p); }
 
  private:
   const LinearOperator& a_;

@@ -65,12 +65,7 @@ template <class Scalar>
 void ElasticBody::build() {
   auto dense = std::make_unique<DenseOperator<Scalar>>(boundary_.mesh.vertex_count());
   assemble_direct(boundary_, reconstruction_, material_.nu, testing_, *dense);
-  inverse_blocks_.resize(boundary_.mesh.vertex_count());
-  for (std::size_t p = 0; p < inverse_blocks_.size(); ++p) {
-    const Mat3 block = dense->diagonal_block(p);
-    const Real d = determinant(block), scale = trace(transpose(block) * block);
-    inverse_blocks_[p] = std::abs(d) > 1e-6 * scale * std::sqrt(scale) ? inverse(block) : Mat3::identity();
-  }
+  inverse_blocks_ = inverse_diagonal_blocks(*dense);
   make_factors_ = [this, &a = *dense] {
     return std::make_unique<FactoredInverse>(a, modes_, CompletedOperator::kShift);
   };

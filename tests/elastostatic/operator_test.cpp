@@ -156,6 +156,7 @@ TEST(Krylov, BothSolversReachTheToleranceAndAgree) {
       for (std::size_t i = 0; i < n * n; ++i) m[i] = random.uniform(-1, 1) / 12 + (i % (n + 1) == 0 ? 1.0 : 0.0);
     }
     std::size_t size() const override { return n; }
+    Mat3 diagonal_block(std::size_t) const override { return Mat3::identity(); }
     void apply(std::span<const Real> x, std::span<Real> y) const override {
       for (std::size_t i = 0; i < n; ++i) {
         y[i] = 0;
