@@ -88,6 +88,8 @@ void read_world(TableReader& root, Scene& scene) {
   section(root, "solver", [&](TableReader& r) {
     scene.solver.tolerance = r.number("tolerance", {1e-14, 0.1}, scene.solver.tolerance);
     scene.solver.max_iterations = r.integer("max_iterations", 1, 100000, scene.solver.max_iterations);
+    constexpr std::array<std::string_view, 3> kThinWalls{"auto", "off", "all"};  // in the order of ThinWalls
+    scene.solver.thin_walls = static_cast<ThinWalls>(r.choice("thin_walls", kThinWalls, 0));
   });
   section(root, "fracture", [&](TableReader& r) {
     SceneFracture& f = scene.fracture;

@@ -97,9 +97,18 @@ struct SceneContact {
   Real min_patch_radius = 0;         // m; lower bound of the Hertz radius
 };
 
+// Where the elastostatic equations are averaged over elements instead of asked for at vertices: an order of magnitude
+// slower to set up, and what keeps the bending of walls thinner than the elements from coming out too stiff.
+enum class ThinWalls {
+  kAuto,  // where elements are longer than the wall is thick
+  kOff,   // nowhere
+  kAll,   // everywhere
+};
+
 struct SceneSolver {
   Real tolerance = 1e-4;  // relative residual
   int max_iterations = 300;
+  ThinWalls thin_walls = ThinWalls::kAuto;
 };
 
 struct SceneFracture {

@@ -300,6 +300,8 @@ FractureResult fracture_solid(Solid& solid, const MassProperties& clean_mass, co
     const Stopwatch watch(result.seconds.assemble);
     elastic = &solid.elastic(material, options.elastic);
   }
+  result.unknowns = 3 * solid.mesh().vertex_count();
+  result.galerkin_vertices = elastic->testing().galerkin_count();
   const Load load = make_load(solid.mesh(), clean_mass, contacts, solid.twins(), solid.bvh(), omega);
   result.panels = load.panels.size();
   const ParticularSolution particular = elastic->particular(load);

@@ -55,6 +55,7 @@ struct FractureResult {
   std::string reason;  // when not solved
   KrylovResult krylov;
   std::size_t triangles = 0, panels = 0;
+  std::size_t unknowns = 0, galerkin_vertices = 0;  // of the system; vertices with Petrov-Galerkin rows
   Real incompatibility = 0;
   CrackSeed strongest;    // largest principal stress on the surface
   std::size_t seeds = 0;  // local maxima above the strength

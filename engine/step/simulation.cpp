@@ -41,6 +41,26 @@ Colour to_colour(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+// Collocation at vertices errs by up to 5 % of bending stress up to this many wall thicknesses an edge (the rule in
+// engine/mesh/thickness_resolution.h), as much as a material's strength is uncertain, and is set up several times as
+// fast.
+constexpr Real kRunThinRatio = kCubicCollocationRule.at_5_percent;
+
+ElasticOptions elastic_options(const SceneSolver& solver) {
+  ElasticOptions o;
+  o.thin_ratio = kRunThinRatio;
+  o.krylov.tolerance = solver.tolerance;
+  o.krylov.max_iterations = solver.max_iterations;
+  o.testing = solver.thin_walls == ThinWalls::kOff   ? TestingRule::kCollocation
+              : solver.thin_walls == ThinWalls::kAll ? TestingRule::kGalerkin
+                                                     : TestingRule::kAuto;
+  return o;
+}
+
+const ResolutionRule& resolution_rule(const SceneSolver& solver) {
+  return solver.thin_walls == ThinWalls::kOff ? kCubicCollocationRule : kCubicTestedRule;
+}
+
 std::size_t operator_bytes(const SurfaceMesh& mesh) {
   return 9 * mesh.vertex_count() * mesh.vertex_count() * sizeof(float);
 }
@@ -59,13 +79,15 @@ void require_solvable(const Body& body, Real edge_length) {
 }  // namespace
 
 struct Simulation::Impl {
+  static constexpr std::size_t kUnrecorded = static_cast<std::size_t>(-1);
   // Beside each body, in the same order.
   struct Companion {
     std::shared_ptr<Solid> solid;
     std::size_t scene_body = 0;
-    std::size_t last_solve = 0;  // step, for dropping operators
-    int failed_solves = 0;       // on this mesh
-    Real stress_per_force = 0;   // the most that earlier solves of this mesh gave, Pa/N
+    std::size_t mesh = kUnrecorded;  // index into RunRecord::meshes
+    std::size_t last_solve = 0;      // step, for dropping operators
+    int failed_solves = 0;           // on this mesh
+    Real stress_per_force = 0;       // the most that earlier solves of this mesh gave, Pa/N
   };
 
   Scene scene;
@@ -81,7 +103,7 @@ struct Simulation::Impl {
   std::size_t steps = 0, frames_served = 0;
   std::uint32_t next_id = 0;
   std::int32_t next_crack = 0;
-  std::vector<std::string> pending;  // messages nobody has taken yet
+  std::vector<std::string> pending, pending_warnings;  // messages nobody has taken yet
   Frame last_frame;
   std::vector<std::size_t> last_frame_roots;  // scene body of each body of last_frame
   Box start_box;
@@ -129,6 +151,9 @@ struct Simulation::Impl {
     return static_cast<std::size_t>(it - bodies.begin());
   }
 
+  // Measures body i's mesh against its walls, once a mesh.
+  const MeshRecord& record_mesh(std::size_t i);
+
   Real curvature_at(BodyId id, const Vec3& world_point);
   std::vector<BodyContact> loads_on(std::size_t i);
   std::string cannot_break(std::size_t i) const;
@@ -162,7 +187,24 @@ void Simulation::Impl::add_solids(const BuiltBody& built, std::size_t scene_body
                          scene.bodies[scene_body].edge_per_thickness};
     companions.push_back({.solid = std::make_shared<Solid>(part.mesh, root), .scene_body = scene_body});
     bodies.push_back(std::move(part));
+    if (!bodies.back().breakable || !scene.fracture.enabled) continue;
+    for (const std::string& w : record_mesh(bodies.size() - 1).warnings)
+      pending_warnings.push_back(bodies.back().name + ": " + w);
   }
+}
+
+const MeshRecord& Simulation::Impl::record_mesh(std::size_t i) {
+  Companion& companion = companions[i];
+  if (companion.mesh == kUnrecorded) {
+    const SurfaceMesh& mesh = companion.solid->mesh();
+    const ResolutionRule& rule = resolution_rule(scene.solver);
+    MeshRecord m;
+    m.step = steps, m.body = bodies[i].name, m.body_id = bodies[i].id.value, m.triangles = mesh.triangle_count();
+    m.rule = &rule, m.resolution = resolution_report(mesh, rule), m.warnings = resolution_warnings(m.resolution, rule);
+    companion.mesh = record.meshes.size();
+    record.meshes.push_back(std::move(m));
+  }
+  return record.meshes[companion.mesh];
 }
 
 Real Simulation::Impl::curvature_at(BodyId id, const Vec3& world_point) {
@@ -229,8 +271,7 @@ std::string Simulation::Impl::reason_to_skip(std::size_t i, std::vector<BodyCont
 FractureOptions Simulation::Impl::fracture_options(std::size_t i) const {
   const Body& body = bodies[i];
   FractureOptions o;
-  o.elastic.krylov.tolerance = scene.solver.tolerance;
-  o.elastic.krylov.max_iterations = scene.solver.max_iterations;
+  o.elastic = elastic_options(scene.solver);
   o.strength = body.material.strength;
   o.propagation_strength = body.material.propagation_strength;
   // The default follows the scene body, not the fragment, so that all cracks of a body look alike.
@@ -268,6 +309,7 @@ void Simulation::Impl::apply_shapes(std::size_t i, FractureResult& result, Event
     solid->partial = std::move(shape.partial);
     solids.push_back({.solid = std::move(solid),
                       .scene_body = companion.scene_body,
+                      .mesh = clean_kept ? companion.mesh : kUnrecorded,
                       .last_solve = companion.last_solve,
                       .failed_solves = clean_kept ? companion.failed_solves : 0,
                       .stress_per_force = clean_kept ? companion.stress_per_force : 0});
@@ -300,6 +342,8 @@ bool Simulation::Impl::fracture(std::size_t i, std::vector<BodyContact>&& loads,
   const Elastic material{shear_modulus(body.material), body.material.poisson};
   EventRecord event;
   event.step = steps, event.time = time(), event.body = body.name, event.body_id = body.id.value;
+  record_mesh(i);
+  event.mesh = companions[i].mesh;
   event.result = fracture_solid(solid, mass, material, loads, omega, fracture_options(i));
   Real force = 0;
   for (const BodyContact& c : loads) force += norm(c.force);
@@ -480,6 +524,9 @@ std::string Simulation::stats_json() const {
 }
 std::vector<std::string> Simulation::take_messages() {
   return std::exchange(impl_->pending, {});
+}
+std::vector<std::string> Simulation::take_warnings() {
+  return std::exchange(impl_->pending_warnings, {});
 }
 
 }  // namespace sherd

@@ -35,6 +35,8 @@ class Simulation {
   std::string stats_json() const;
   // What a person should know and has not taken yet, a line each: repairs of the meshes, then what breaks, what fails.
   std::vector<std::string> take_messages();
+  // The same for what makes the results doubtful: scene bodies whose elements are too long for their walls.
+  std::vector<std::string> take_warnings();
 
  private:
   struct Impl;

@@ -47,6 +47,15 @@ Json crack_json(const CrackRecord& c) {
   return j;
 }
 
+Json mesh_json(const MeshRecord& m) {
+  return {{"body", m.body},
+          {"body_id", m.body_id},
+          {"step", m.step},
+          {"triangles", m.triangles},
+          {"resolution", Json::parse(to_json(m.resolution, *m.rule))},
+          {"warnings", m.warnings}};
+}
+
 Json event_json(const EventRecord& e) {
   const FractureResult& r = e.result;
   Json j{{"step", e.step}, {"time", e.time}, {"body", e.body}, {"body_id", e.body_id}};
@@ -57,9 +66,13 @@ Json event_json(const EventRecord& e) {
                              {"duration", c.duration},
                              {"patch_radius", c.patch_radius}});
   j["solve"] = {{"ok", r.solved},
+                {"mesh", e.mesh},
                 {"triangles", r.triangles},
+                {"unknowns", r.unknowns},
+                {"galerkin_vertices", r.galerkin_vertices},
                 {"load_panels", r.panels},
                 {"iterations", r.krylov.iterations},
+                {"products", r.krylov.products},
                 {"residual", r.krylov.residual},
                 {"incompatibility", r.incompatibility},
                 {"max_principal", r.strongest.stress.value},
@@ -131,6 +144,8 @@ std::string to_json(const RunRecord& r) {
   j["messages"] = r.messages;
   j["totals"] = totals_json(r);
   j["seconds"] = seconds_json(r);
+  j["meshes"] = Json::array();
+  for (const MeshRecord& m : r.meshes) j["meshes"].push_back(mesh_json(m));
   j["events"] = Json::array();
   for (const EventRecord& e : r.events) j["events"].push_back(event_json(e));
   j["steps"] = Json::array();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/mesh/thickness_resolution.h"
 #include "engine/rigid/step.h"
 #include "engine/step/fracture_event.h"
 
@@ -20,8 +21,20 @@ struct StepRecord {
   Real rigid_seconds = 0, fracture_seconds = 0;
 };
 
+// A mesh that stress was, or may be, solved on: of a breakable body at the start, of a fragment at its first solve.
+struct MeshRecord {
+  std::size_t step = 0;
+  std::string body;
+  std::uint32_t body_id = 0;
+  std::size_t triangles = 0;
+  const ResolutionRule* rule = nullptr;  // of the method the run uses
+  ResolutionReport resolution;
+  std::vector<std::string> warnings;
+};
+
 struct EventRecord {
   std::size_t step = 0;
+  std::size_t mesh = 0;  // index into RunRecord::meshes
   Real time = 0;
   std::string body;
   std::uint32_t body_id = 0;
@@ -34,6 +47,7 @@ struct EventRecord {
 struct RunRecord {
   std::string scene;
   std::vector<std::string> messages;
+  std::vector<MeshRecord> meshes;
   std::vector<StepRecord> steps;
   std::vector<EventRecord> events;
   Real prepare_seconds = 0;

@@ -147,6 +147,26 @@ TEST_F(Command, QuietAndUnrenderedRunsSayAndDrawNothing) {
   EXPECT_TRUE(fs::exists(folder_ / "results/pieces/transforms.json"));
 }
 
+TEST_F(Command, WallsTooThinForTheMeshAreSaidOnceOnTheErrorStream) {
+  write("scene.toml", R"(
+duration = 0.02
+[[body]]
+name = "pane"
+shape = {kind = "plate", width = 0.06, depth = 0.04, thickness = 0.0025}
+edge_length = 0.01
+position = [0, 1, 0]
+)");
+  const Outcome outcome = sherd("run scene.toml --no-render --out results");
+  EXPECT_EQ(outcome.code, 0);
+  const std::string begin = "warning: pane: walls too thin for the mesh";
+  EXPECT_EQ(outcome.errors.find(begin), 0u) << outcome.errors;
+  EXPECT_EQ(outcome.errors.find("warning", 1), std::string::npos) << outcome.errors;
+  const auto stats = nlohmann::json::parse(read(folder_ / "results/stats.json"));
+  ASSERT_EQ(stats.at("meshes").size(), 1u);
+  EXPECT_EQ(stats["meshes"][0].at("warnings").size(), 1u);
+  EXPECT_EQ(sherd("run scene.toml --no-render --quiet --out results").errors, "");
+}
+
 TEST_F(Command, AnInterruptLeavesACompleteFolder) {
   // Long enough that a signal after the first picture finds it running.
   std::string text = kSmallScene;

@@ -35,6 +35,8 @@ TEST_F(BadScene, WrongTypesAreRefused) {
             "scene.toml:5:9: output.width: value 640.5 not allowed; allowed type: a whole number; range 16 to 8192");
   EXPECT_EQ(problem(kBall + "[ground]\n[[ground.height]]\n"),
             "scene.toml:5:1: ground.height: value [{}] not allowed; allowed type: a number; range -1e+06 to 1e+06 m");
+  EXPECT_EQ(problem(kBall + "[solver]\nthin_walls = true\n"),
+            "scene.toml:5:14: solver.thin_walls: value true not allowed; allowed values: auto, off, all");
   EXPECT_EQ(problem("ground = 3\n" + kBall), "scene.toml:1:10: ground: value 3 not allowed; allowed type: a table");
   EXPECT_EQ(
       problem("body = \"ball\"\n"),

@@ -27,6 +27,7 @@ TEST_F(SceneValues, SmallestSceneHasTheDocumentedDefaults) {
   EXPECT_TRUE(scene.ground.enabled);
   EXPECT_FALSE(scene.contact.duration);
   EXPECT_EQ(scene.contact.min_duration, scene.time_step);
+  EXPECT_EQ(scene.solver.thin_walls, ThinWalls::kAuto);
   EXPECT_TRUE(scene.camera.automatic);
   EXPECT_TRUE(scene.output.movie);
 }
@@ -72,6 +73,7 @@ min_patch_radius = 0.001
 [solver]
 tolerance = 1e-8
 max_iterations = 77
+thin_walls = "all"
 [fracture]
 enabled = false
 max_cracks = 3
@@ -134,6 +136,7 @@ material_view = "table"
   EXPECT_EQ(scene.contact.min_patch_radius, 0.001);
   EXPECT_EQ(scene.solver.tolerance, 1e-8);
   EXPECT_EQ(scene.solver.max_iterations, 77);
+  EXPECT_EQ(scene.solver.thin_walls, ThinWalls::kAll);
   EXPECT_FALSE(scene.fracture.enabled);
   EXPECT_EQ(scene.fracture.max_cracks, 3);
   EXPECT_EQ(scene.fracture.max_fragments, 50);

@@ -56,4 +56,11 @@ void Progress::note(const std::string& text) {
   std::fflush(stdout);
 }
 
+void Progress::warn(const std::string& text) {
+  if (quiet_) return;
+  clear_line();
+  std::fflush(stdout);
+  std::fprintf(stderr, "warning: %s\n", text.c_str());
+}
+
 }  // namespace sherd

@@ -19,6 +19,8 @@ class Progress {
   void update(Real time, std::size_t bodies, std::size_t frames);
   // A line of its own.
   void note(const std::string& text);
+  // The same on stderr, for what makes the results doubtful.
+  void warn(const std::string& text);
 
  private:
   using Clock = std::chrono::steady_clock;

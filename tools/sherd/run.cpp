@@ -16,6 +16,7 @@ void simulate(Simulation& simulation, RunWriter& writer, std::size_t frame_limit
   std::size_t bodies = 0;
   for (;;) {
     for (const std::string& message : simulation.take_messages()) progress.note(message);
+    for (const std::string& warning : simulation.take_warnings()) progress.warn(warning);
     if (simulation.frame_due()) {
       const Frame frame = simulation.snapshot();
       bodies = frame.bodies.size();
