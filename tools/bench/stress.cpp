@@ -32,7 +32,7 @@ void print(const Row& r) {
   const std::string thin = r.edge_over_thickness > 0 ? fmt::format("{:.2f}", r.edge_over_thickness) : "-";
   const std::string order = r.order != 0 ? fmt::format("{:.1f}", r.order) : "-";
   std::string line =
-      fmt::format("{:<17}{:<9}{:>6}{:>7}{:>6} ", r.family, name(r.formulation), r.triangles, r.unknowns, thin);
+      fmt::format("{:<23}{:<9}{:>6}{:>7}{:>6} ", r.family, name(r.formulation), r.triangles, r.unknowns, thin);
   if (r.ok)
     line += fmt::format("{:>8.3f}{:>8.2f} |{:>8.3f}{:>8.2f} |{:>7.3f}{:>6}{:>5}{:>5}", 100 * r.error.all.rms,
                         100 * r.error.all.max, 100 * r.error.free.rms, 100 * r.error.free.max, 100 * r.floor.all.rms,
@@ -94,7 +94,8 @@ void run_table(const StressOptions& o, json& out) {
       "edges; "
       "floor: rms of the recovery fed with exact displacements.");
   std::puts(
-      "case             formul.    tris  unkn.   h/T      rms     max |    free     max |  floor order  its prod    "
+      "case                   formul.    tris  unkn.   h/T      rms     max |    free     max |  floor order  its prod "
+      "   "
       "prep  "
       "assem  solve stress     MB");
   std::vector<const exact::CaseFamily*> families;
@@ -114,7 +115,7 @@ void run_interior(const StressOptions& o, json& out) {
   std::puts("\nInside, rms error in % of the peak at a depth below the surface:");
   for (const exact::Formulation f : formulations(o))
     for (const InteriorRow& r : measure_interior(f, o.solve)) {
-      std::string line = fmt::format("{:<17}{:<9}{:>6} ", r.family, name(f), r.triangles);
+      std::string line = fmt::format("{:<23}{:<9}{:>6} ", r.family, name(f), r.triangles);
       json errors = json::array();
       for (std::size_t i = 0; i < r.depth.size(); ++i) {
         line += fmt::format("  {:g}h {:.3f}", r.depth[i], 100 * r.error[i].rms);
@@ -130,7 +131,7 @@ void run_iterations(const StressOptions& o, json& out) {
   for (const exact::Formulation f : formulations(o))
     for (const IterationRow& r : measure_iterations(f, o.solve)) {
       std::puts(fmt::format(
-                    "{:<17}{:<9}{:>6} nu {:.2f}  {:>4} iterations {:>4} products  assembly {:.2f} s  solve {:.2f} s{}",
+                    "{:<23}{:<9}{:>6} nu {:.2f}  {:>4} iterations {:>4} products  assembly {:.2f} s  solve {:.2f} s{}",
                     r.body, name(f), r.triangles, r.nu, r.iterations, r.products, r.assemble, r.solve,
                     r.ok ? "" : "  NOT CONVERGED")
                     .c_str());
@@ -152,7 +153,7 @@ void run_vessels(const StressOptions& o, json& out) {
       "walls from the creases:");
   for (const VesselRow& r : measure_vessels(formulations(o), o.solve, o.vessel_factor)) {
     std::puts(
-        fmt::format("{:<17}{:<9}{:>6} h/T {:.2f}  against {:>6} h/T {:.2f}: {}", r.body, name(r.formulation),
+        fmt::format("{:<23}{:<9}{:>6} h/T {:.2f}  against {:>6} h/T {:.2f}: {}", r.body, name(r.formulation),
                     r.triangles, r.edge_over_thickness, r.reference_triangles, r.reference_edge_over_thickness,
                     r.ok ? fmt::format("wall rms {:.2f} max {:.1f}, all rms {:.2f} max {:.1f}, {} iterations, {:.1f} s "
                                        "(reference {:.1f} s)",

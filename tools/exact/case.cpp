@@ -13,8 +13,10 @@ CaseFamily plate(std::string_view name, std::vector<int> cells, Real thickness, 
 std::vector<CaseFamily> build_families() {
   return {
       {"cube", {4, 8, 16}, stretched_cube},
-      {"hollow-sphere", {4, 6, 9}, hollow_sphere},
+      {"hollow-sphere", {4, 6, 9}, [](int f) { return hollow_sphere(f); }},
+      {"hollow-sphere-jittered", {4, 6, 9}, [](int f) { return hollow_sphere(f, 0.2); }},
       {"cavity", {4, 6, 9}, [](int f) { return cavity(f, 4); }},
+      {"cavity-jittered", {4, 6, 9}, [](int f) { return cavity(f, 4, 0.2); }},
       {"cavity-10", {4, 6, 9}, [](int f) { return cavity(f, 10); }},
       {"rotating-sphere", {4, 7, 11}, rotating_sphere},
       {"square-torsion", {4, 6, 9}, square_torsion},

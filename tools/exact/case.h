@@ -46,9 +46,10 @@ enum class TractionDetail { kConstant, kQuadratic };
 // The load on the case's own mesh, with the body force.
 Load make_load(const ExactCase& c, TractionDetail detail);
 
-ExactCase stretched_cube(int n);                          // 12 n^2 triangles; traction e_z at z = +-1/2
-ExactCase hollow_sphere(int f);                           // 40 f^2; r/R = 0.5, practical inner pressure 1 Pa
-ExactCase cavity(int f, Real outer);                      // 40 f^2; radius 1 in a sphere of radius `outer`, free cavity
+ExactCase stretched_cube(int n);  // 12 n^2 triangles; traction e_z at z = +-1/2
+// `jitter`: of the vertices over the spheres, in edges.
+ExactCase hollow_sphere(int f, Real jitter = 0);          // 40 f^2; r/R = 0.5, practical inner pressure 1 Pa
+ExactCase cavity(int f, Real outer, Real jitter = 0);     // 40 f^2; radius 1 in a sphere of radius `outer`, free cavity
 ExactCase rotating_sphere(int f);                         // 20 f^2; body force (x, y, 0), practical: free facets
 ExactCase spherical_shell(int f, Real inner);             // 40 f^2; outer radius 1, pressure P4(cos theta) inside
 ExactCase square_torsion(int n);                          // 20 n^2; 1 x 1 x 2

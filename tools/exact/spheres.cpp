@@ -10,7 +10,6 @@ namespace sherd::exact {
 namespace {
 
 const Elastic kMaterial{1.0, 0.3};
-constexpr Real kJitter = 0;
 constexpr NavierType kGradient = NavierType::kGradient, kLove = NavierType::kLove;
 
 Sym3 no_stress(const Vec3&) {
@@ -54,12 +53,12 @@ Real largest_principal(const ExactCase& c, std::initializer_list<Real> radii) {
 
 }  // namespace
 
-ExactCase hollow_sphere(int f) {
+ExactCase hollow_sphere(int f, Real jitter) {
   constexpr Real kInner = 0.5;
   ExactCase c;
   c.name = "hollow sphere", c.load = "practical: pressure 1 on the inner facets, outer facets free";
   c.material = kMaterial;
-  c.mesh = jittered_hollow_sphere(1, kInner, f, kJitter);
+  c.mesh = jittered_hollow_sphere(1, kInner, f, jitter);
   // x phi_0 and grad(1/r): Lame's solution.
   fit(c, {{kLove, {0, false}}, {kGradient, {0, true}}},
       {{kInner, [](const Vec3& x) { return normalized(x) * -1.0; }}, {1, no_traction}});
@@ -69,12 +68,12 @@ ExactCase hollow_sphere(int f) {
   return c;
 }
 
-ExactCase cavity(int f, Real outer) {
+ExactCase cavity(int f, Real outer, Real jitter) {
   ExactCase c;
   c.name = fmt::format("cavity R={:g}", outer);
   c.load = "tension 1 along z: exact tractions on the outer facets, cavity facets free";
   c.material = kMaterial;
-  c.mesh = jittered_hollow_sphere(outer, 1, f, kJitter);
+  c.mesh = jittered_hollow_sphere(outer, 1, f, jitter);
   const Real young = 2 * kMaterial.mu * (1 + kMaterial.nu);
   c.displacement = [young](const Vec3& x) { return Vec3{-kMaterial.nu * x.x, -kMaterial.nu * x.y, x.z} / young; };
   c.stress = [](const Vec3&) { return Sym3{0, 0, 1, 0, 0, 0}; };
@@ -91,7 +90,7 @@ ExactCase rotating_sphere(int f) {
   ExactCase c;
   c.name = "rotating sphere", c.load = "practical: body force (x, y, 0), all facets free";
   c.material = kMaterial;
-  c.mesh = jittered_sphere(1, f, kJitter, 1);
+  c.mesh = jittered_sphere(1, f, 0, 1);
   c.body_force.linear[0][0] = c.body_force.linear[1][1] = 1;
   // b = grad(r^2/3 - phi_2/3), so u = grad chi with (lambda + 2 mu) laplace chi = phi_2/3 - r^2/3:
   // chi = k (r^2 phi_2 / 42 - r^4 / 60), k = 1/(lambda + 2 mu).
