@@ -26,12 +26,15 @@ struct Axis {
     low /= 1.3, high *= 1.3;
   }
   double at(double v) const { return from + (to - from) * std::log(v / low) / std::log(high / low); }
-  // Values 1, 2 and 5 times powers of ten within the axis; with few of them all get a label.
+  // Values 1, 2 and 5 times powers of ten within the axis, over more than six decades every second power alone; with
+  // few of them all get a label.
   std::vector<double> ticks() const {
     std::vector<double> t;
+    const bool wide = high > 1e6 * low;
     for (int e = static_cast<int>(std::floor(std::log10(low))); e <= static_cast<int>(std::log10(high)) + 1; ++e)
       for (const double m : {1.0, 2.0, 5.0})
-        if (const double v = m * std::pow(10, e); v >= low && v <= high) t.push_back(v);
+        if (const double v = m * std::pow(10, e); v >= low && v <= high && !(wide && (m > 1 || e % 2 != 0)))
+          t.push_back(v);
     return t;
   }
 };
