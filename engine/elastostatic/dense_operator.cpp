@@ -1,5 +1,7 @@
 #include "engine/elastostatic/dense_operator.h"
 
+#include <fmt/format.h>
+
 #include <numbers>
 
 #include "kernels/core/parallel.h"
@@ -153,6 +155,13 @@ Mat3 DenseOperator<Scalar>::diagonal_block(std::size_t p) const {
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) block.m[i][j] = static_cast<Real>(matrix_[(3 * p + i) * size_ + 3 * p + j]);
   return block;
+}
+
+std::string too_large(std::size_t triangles, std::size_t size, bool double_storage, std::size_t max_bytes) {
+  const std::size_t bytes = size * size * (double_storage ? sizeof(double) : sizeof(float));
+  if (bytes <= max_bytes) return {};
+  return fmt::format("{} triangles need a dense operator of {} MiB, more than the {} MiB allowed: raise edge_length",
+                     triangles, bytes >> 20, max_bytes >> 20);
 }
 
 template class DenseOperator<float>;

@@ -7,6 +7,7 @@
 // closed surface.
 #pragma once
 #include <functional>
+#include <string>
 
 #include "engine/elastostatic/boundary.h"
 #include "engine/elastostatic/linear_operator.h"
@@ -35,6 +36,8 @@ class DenseOperator final : public LinearOperator {
   std::size_t size_;
   std::vector<Scalar> matrix_;  // row major
 };
+// Why an operator of `size` unknowns on a mesh of so many triangles must not be made, or empty when it fits max_bytes.
+std::string too_large(std::size_t triangles, std::size_t size, bool double_storage, std::size_t max_bytes);
 extern template class DenseOperator<float>;
 extern template class DenseOperator<double>;
 

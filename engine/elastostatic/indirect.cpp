@@ -122,14 +122,8 @@ IndirectBody::IndirectBody(const SurfaceMesh& mesh, const Elastic& material, con
       options_(options),
       boundary_(mesh, options.quadrature),
       modes_(boundary_.centroid, areas(boundary_)) {
-  const std::size_t n = 3 * mesh.triangle_count(),
-                    bytes = n * n * (options.double_storage ? sizeof(double) : sizeof(float));
-  if (bytes > options.max_bytes) {
-    reason_ =
-        fmt::format("{} triangles need a dense operator of {} MiB, more than the {} MiB allowed: raise edge_length",
-                    mesh.triangle_count(), bytes >> 20, options.max_bytes >> 20);
-    return;
-  }
+  reason_ = too_large(mesh.triangle_count(), 3 * mesh.triangle_count(), options.double_storage, options.max_bytes);
+  if (!reason_.empty()) return;
   if (options.double_storage)
     build<double>();
   else

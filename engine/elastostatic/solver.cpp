@@ -47,14 +47,8 @@ ElasticBody::ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const
       reconstruction_(boundary_.mesh, material.nu, options.reconstruction),
       testing_(boundary_, reconstruction_, vertex_tests(boundary_.mesh, options)),
       modes_(boundary_.mesh.vertices, boundary_.vertex_area) {
-  const std::size_t n = 3 * mesh.vertex_count(),
-                    bytes = n * n * (options.double_storage ? sizeof(double) : sizeof(float));
-  if (bytes > options.max_bytes) {
-    reason_ =
-        fmt::format("{} triangles need a dense operator of {} MiB, more than the {} MiB allowed: raise edge_length",
-                    mesh.triangle_count(), bytes >> 20, options.max_bytes >> 20);
-    return;
-  }
+  reason_ = too_large(mesh.triangle_count(), 3 * mesh.vertex_count(), options.double_storage, options.max_bytes);
+  if (!reason_.empty()) return;
   if (options.double_storage)
     build<double>();
   else

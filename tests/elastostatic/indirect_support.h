@@ -1,5 +1,6 @@
 // What the tests of the indirect formulation share.
 #pragma once
+#include "engine/load/load.h"
 #include "engine/mesh/shapes.h"
 #include "kernels/core/vec3.h"
 
@@ -29,6 +30,15 @@ inline SurfaceMesh make_shell(Real outer, Real inner, Real edge_of_unit_sphere) 
   for (const Triangle& t : sphere.triangles) mesh.add_triangle(t[0], t[1], t[2]);
   for (const Triangle& t : sphere.triangles) mesh.add_triangle(n + t[0], n + t[2], n + t[1]);
   return mesh;
+}
+
+// One traction a face: traction(centroid, unit normal).
+Load face_load(const SurfaceMesh& mesh, const auto& traction) {
+  Load load;
+  load.face_traction.resize(mesh.triangle_count());
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    load.face_traction.set(t, traction(mesh.centroid(t), normalized(mesh.area_normal2(t))));
+  return load;
 }
 
 }  // namespace sherd

@@ -15,13 +15,6 @@ namespace {
 
 const Elastic kMaterial{3.0, 0.3};
 
-Load face_load(const SurfaceMesh& mesh, const auto& traction) {
-  Load load;
-  load.face_traction.resize(mesh.triangle_count());
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
-    load.face_traction.set(t, traction(mesh.centroid(t), normalized(mesh.area_normal2(t))));
-  return load;
-}
 Load stretch(const SurfaceMesh& mesh) {
   return face_load(mesh, [](const Vec3&, const Vec3& n) { return Vec3{0, n.y, 0}; });
 }

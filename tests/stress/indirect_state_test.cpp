@@ -42,13 +42,6 @@ IndirectOptions precise() {
   o.krylov.tolerance = 1e-11, o.double_storage = true;
   return o;
 }
-Load face_load(const SurfaceMesh& mesh, const auto& traction) {
-  Load load;
-  load.face_traction.resize(mesh.triangle_count());
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
-    load.face_traction.set(t, traction(mesh.centroid(t), normalized(mesh.area_normal2(t))));
-  return load;
-}
 // A block that hangs by its top: div sigma + b = 0 with b = (0, -1, 0).
 Load hanging(const SurfaceMesh& mesh) {
   const Box box = bounding_box(mesh);
