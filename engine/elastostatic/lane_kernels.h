@@ -76,6 +76,13 @@ struct LaneSources {
   std::size_t count;
 };
 
+// What triangles send out into Somigliana's gradient, concentrated at points: density f of the Kelvin layer, M u, the
+// surface gradient (row major) and the normal. Arrays of `count` numbers.
+struct LaneElements {
+  const double *y[3], *density[3], *guenter[3], *gradient[9], *normal[3];
+  std::size_t count;
+};
+
 struct LaneKernels {
   // x: three coordinates of the lanes, 3 kLanes. mask: 1 or 0 a lane. local: the panel's ten nodes, indices into
   // `nodes` (kLaneBlock numbers each), which is added to; total (kLanes) gathers the double layer of 1.
@@ -90,6 +97,10 @@ struct LaneKernels {
   // u (3 kLanes) += sum over sources of ((3 - 4 nu) f + r (r f) / l^2) / l, `ratio` = 3 - 4 nu; sources whose squared
   // distance is not above `least` add nothing.
   void (*kelvin_sum)(const LaneSources&, double ratio, double least, const double* x, double* u);
+  // gradient (9 kLanes, [i][k] = u_i,k) += sum over the elements' points; kelvin = 1/(16 pi mu (1 - nu)), the rest as
+  // in kelvin_sum.
+  void (*gradient_sum)(const LaneElements&, double kelvin, double ratio, double least, const double* x,
+                       double* gradient);
   // Block `in` times weight[a] to each of the ten nodes local[a].
   void (*add_weighted)(const double* in, const double* weight, const std::uint32_t* local, double* nodes);
 };

@@ -190,6 +190,36 @@ void kelvin_sum(const LaneSources& s, double ratio, double least, const double* 
   }
 }
 
+void gradient_sum(const LaneElements& s, double kelvin, double ratio, double least, const double* x, double* gradient) {
+  constexpr double kQuarterPi = 0.079577471545947667884;  // 1 / (4 pi)
+  for (std::size_t h = 0; h < kLanes; h += kWidth) {
+    const V x0 = load(x + h), x1 = load(x + kLanes + h), x2 = load(x + 2 * kLanes + h);
+    V g[3][3];
+    for (std::size_t i = 0; i < 9; ++i) g[i / 3][i % 3] = load(gradient + i * kLanes + h);
+    for (std::size_t p = 0; p < s.count; ++p) {
+      const V r[3] = {x0 - s.y[0][p], x1 - s.y[1][p], x2 - s.y[2][p]};
+      const V l2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+      V inverse;
+      for (std::size_t k = 0; k < kWidth; ++k) inverse[k] = l2[k] > least ? 1 / std::sqrt(l2[k]) : 0;
+      const V inverse2 = inverse * inverse, inverse3 = inverse2 * inverse, c = inverse3 * kelvin;
+      const double f[3] = {s.density[0][p], s.density[1][p], s.density[2][p]};
+      const V rf = r[0] * f[0] + r[1] * f[1] + r[2] * f[2], radial = rf * inverse2 * -3;
+      // c / l^3 [ -(3 - 4 nu) f_i r_k + r_i f_k + (r f) d_ik - 3 (r f) r_i r_k / l^2 ]
+      const V a = inverse3 * -kQuarterPi;  // gradient of 1/l over 4 pi: a r
+      const V an = a * (r[0] * s.normal[0][p] + r[1] * s.normal[1][p] + r[2] * s.normal[2][p]);
+      for (int i = 0; i < 3; ++i) {
+        const double *row0 = s.gradient[3 * i], *row1 = s.gradient[3 * i + 1], *row2 = s.gradient[3 * i + 2];
+        const V ga = (r[0] * row0[p] + r[1] * row1[p] + r[2] * row2[p]) * a;
+        const V along = c * (radial * r[i] - ratio * f[i]) + a * s.guenter[i][p], ri = c * r[i];
+        for (int k = 0; k < 3; ++k)
+          g[i][k] += along * r[k] + ri * f[k] + an * s.gradient[3 * i + k][p] - ga * s.normal[k][p];
+        g[i][i] += c * rf;
+      }
+    }
+    for (std::size_t i = 0; i < 9; ++i) store(gradient + i * kLanes + h, g[i / 3][i % 3]);
+  }
+}
+
 void add_weighted(const double* in, const double* weight, const std::uint32_t* local, double* nodes) {
   for (int a = 0; a < 10; ++a) add_block(nodes + kLaneBlock * local[a], in, weight[a]);
 }
@@ -197,6 +227,7 @@ void add_weighted(const double* in, const double* weight, const std::uint32_t* l
 }  // namespace
 
 extern const LaneKernels SHERD_LANE_KERNELS;
-const LaneKernels SHERD_LANE_KERNELS = {three_points, six_points, moments, gather, kelvin_sum, add_weighted};
+const LaneKernels SHERD_LANE_KERNELS = {three_points, six_points,   moments,     gather,
+                                        kelvin_sum,   gradient_sum, add_weighted};
 
 }  // namespace sherd

@@ -19,6 +19,15 @@ Mat3 laplace_part(const Vec3& guenter, const Mat3& gradient, const Vec3& inverse
          (1 / (4 * std::numbers::pi));
 }
 
+Vec3 position(const PanelFrame& f, const TrianglePoint& p) {
+  return f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c;
+}
+
+Mat3 point_gradient(const Vec3& r, const ElementField::Source& s, const Vec3& n, const Elastic& m) {
+  return kelvin::gradient(r, s.density, m) +
+         laplace_part(s.guenter, s.gradient, laplace::single_layer_gradient(r) * (4 * std::numbers::pi), n);
+}
+
 }  // namespace
 
 ElementField::ElementField(const PanelFrame& panel, const std::array<Vec3, cubic::kNodes>& u, const Quadratic& traction,
@@ -76,27 +85,24 @@ Mat3 ElementField::closed_form(const PanelFrame& panel, const Vec3& x, const Ela
   return g;
 }
 
-Mat3 ElementField::gradient_at(const PanelFrame& panel, const Vec3& x, const Elastic& m, Real near, Real middle,
-                               Side side) const {
-  const Real d2 = distance2(x, panel.centroid());
-  if (side != Side::kAway || d2 <= near * near) return closed_form(panel, x, m, side);
+Mat3 ElementField::seven_points(const PanelFrame& panel, const Vec3& x, const Elastic& m) const {
   Mat3 g;
-  const auto add = [&](const Vec3& y, const Source& s) {
-    const Vec3 r = x - y;
-    g += kelvin::gradient(r, s.density, m) +
-         laplace_part(s.guenter, s.gradient, laplace::single_layer_gradient(r) * (4 * std::numbers::pi), panel.normal);
-  };
-  const auto point = [&](const TrianglePoint& p) {
-    return panel.vertex[0] * p.a + panel.vertex[1] * p.b + panel.vertex[2] * p.c;
-  };
-  if (d2 <= middle * middle)
-    for (const TrianglePoint& p : kGauss7) {
-      const Real w = p.weight * panel.area;
-      add(point(p), source(panel, evaluate(u_s_, p.b, p.c) * w, evaluate(u_t_, p.b, p.c) * w,
-                           evaluate(traction_, p.b, p.c) * w, m.mu));
-    }
-  else
-    for (std::size_t q = 0; q < 3; ++q) add(point(kGauss3[q]), far_[q]);
+  for (const TrianglePoint& p : kGauss7) {
+    const Real w = p.weight * panel.area;
+    g += point_gradient(x - position(panel, p),
+                        source(panel, evaluate(u_s_, p.b, p.c) * w, evaluate(u_t_, p.b, p.c) * w,
+                               evaluate(traction_, p.b, p.c) * w, m.mu),
+                        panel.normal, m);
+  }
+  return g;
+}
+
+Mat3 ElementField::three_points(const PanelFrame& panel, const Vec3& x, const Elastic& m, Real least) const {
+  Mat3 g;
+  for (std::size_t q = 0; q < 3; ++q) {
+    const Vec3 r = x - position(panel, kGauss3[q]);
+    if (norm2(r) > least) g += point_gradient(r, far_[q], panel.normal, m);
+  }
   return g;
 }
 

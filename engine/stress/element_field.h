@@ -9,6 +9,11 @@ namespace sherd {
 
 class ElementField {
  public:
+  // What a point of the panel sends out: density of the Kelvin layer t - 2 mu M u, M u, the surface gradient.
+  struct Source {
+    Vec3 density, guenter;
+    Mat3 gradient;
+  };
   using Quadratic = std::array<Vec3, kQuadraticMonomials>;  // coefficients of the monomials of moments.h
 
   ElementField() = default;
@@ -19,22 +24,17 @@ class ElementField {
   // [i][k] = u_i,k along the surface at (s, t); its product with the normal is zero.
   Mat3 surface_gradient(const PanelFrame& panel, Real s, Real t) const;
   Vec3 traction_at(Real s, Real t) const;
-  // Contribution to u_i,k(x), x off the panel: closed form within `near` of the centroid, seven points within `middle`,
-  // three beyond (metres).
-  Mat3 gradient_at(const PanelFrame& panel, const Vec3& x, const Elastic& material, Real near, Real middle,
-                   Side side = Side::kAway) const;
-
- private:
-  // What a point of the panel sends out: density of the Kelvin layer t - 2 mu M u, M u, the surface gradient.
-  struct Source {
-    Vec3 density, guenter;
-    Mat3 gradient;
-  };
-  Source source(const PanelFrame& panel, const Vec3& us, const Vec3& ut, const Vec3& traction, Real mu) const;
+  // At kGauss3, times area: exact against kernels that are linear over the panel.
+  const std::array<Source, 3>& far() const { return far_; }
+  // Contribution to u_i,k(x) in closed form, by seven points and by the three points of far(), of which those whose
+  // squared distance is not above `least` are left out.
   Mat3 closed_form(const PanelFrame& panel, const Vec3& x, const Elastic& material, Side side) const;
+  Mat3 seven_points(const PanelFrame& panel, const Vec3& x, const Elastic& material) const;
+  Mat3 three_points(const PanelFrame& panel, const Vec3& x, const Elastic& material, Real least) const;
 
+  Source source(const PanelFrame& panel, const Vec3& us, const Vec3& ut, const Vec3& traction, Real mu) const;
   Quadratic u_s_, u_t_, traction_;  // derivatives of u along s and t, m; Pa
-  std::array<Source, 3> far_;       // at kGauss3, times area: exact against kernels linear over the panel
+  std::array<Source, 3> far_;
 };
 
 }  // namespace sherd

@@ -1,5 +1,6 @@
 #include "engine/stress/stress.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "engine/stress/layer_gradient.h"
@@ -33,10 +34,11 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
     for (std::size_t a = 0; a < u.size(); ++a) u[a] = nodes[body.reconstruction().nodes(t)[a]];
     elements_[t] = ElementField(b.panels[t], u, traction_polynomial(b, load, particular_, t), body.material());
   });
+  far_ = std::make_unique<FarField>(b, elements_, body.material());
   patch_load_.patches = load.patches;
   for (const auto& c : load.panels.corners) load_panels_.push_back(make_panel(c[0], c[1], c[2]));
-  // Recovered is what the particular solution leaves: of the corners of a faceted body neither the tangent plane nor the
-  // traction is known exactly, and the mean stress is not to suffer from it.
+  // Recovered is what the particular solution leaves: of the corners of a faceted body neither the tangent plane nor
+  // the traction is known exactly, and the mean stress is not to suffer from it.
   Vec3Column traction(recovery.corners().size());
   for (std::size_t c = 0; c < traction.size(); ++c) {
     const SurfaceCorner& corner = recovery.corners()[c];
@@ -62,15 +64,18 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
   }
 }
 
+void StressState::displacement_gradients(std::span<const Vec3> x, std::span<const std::uint32_t> face,
+                                         std::span<Mat3> out) const {
+  far_->gradients(x, face, out);
+  for (std::size_t k = 0; k < x.size(); ++k)
+    for (std::size_t i = 0; i < load_panels_.size(); ++i)
+      out[k] +=
+          layer_gradient(load_panels_[i], x[k], load_traction_[i], body_.material(), body_.options().quadrature).kelvin;
+}
+
 Mat3 StressState::displacement_gradient(const Vec3& x, std::uint32_t face) const {
-  const Boundary& b = body_.boundary();
-  const Elastic& m = body_.material();
   Mat3 g;
-  for (std::size_t t = 0; t < b.panels.size(); ++t)
-    g += elements_[t].gradient_at(b.panels[t], x, m, std::sqrt(b.near2[t]), std::sqrt(b.middle2[t]),
-                                  t == face ? Side::kInterior : Side::kAway);
-  for (std::size_t i = 0; i < load_panels_.size(); ++i)
-    g += layer_gradient(load_panels_[i], x, load_traction_[i], m, body_.options().quadrature).kelvin;
+  displacement_gradients({&x, 1}, {&face, 1}, {&g, 1});
   return g;
 }
 
@@ -100,8 +105,17 @@ Sym3 StressState::on_face(std::uint32_t face, const Vec3& x) const {
 
 void StressState::evaluate(const Vec3Column& points, std::vector<Sym3>& out) const {
   out.resize(points.size());
-  parallel_for(points.size(), 1, [&](std::size_t i) {
-    out[i] = blend_near_surface(*this, bvh_, body_.boundary(), points[i], [&](const Vec3& x) { return interior(x); });
+  parallel_for((points.size() + kLanes - 1) / kLanes, 1, [&](std::size_t group) {
+    const std::size_t first = group * kLanes, count = std::min(kLanes, points.size() - first);
+    std::array<Vec3, kLanes> x;
+    std::array<std::uint32_t, kLanes> face;
+    std::array<Mat3, kLanes> gradient;
+    for (std::size_t k = 0; k < count; ++k) x[k] = points[first + k], face[k] = kNone;
+    displacement_gradients({x.data(), count}, {face.data(), count}, {gradient.data(), count});
+    for (std::size_t k = 0; k < count; ++k)
+      out[first + k] = blend_near_surface(*this, bvh_, body_.boundary(), x[k], [&](const Vec3& y) {
+        return y == x[k] ? kelvin::hooke(gradient[k], body_.material()) + particular_.stress(y) : interior(y);
+      });
   });
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 #include "engine/elastostatic/solver.h"
 #include "engine/mesh/bvh.h"
-#include "engine/stress/element_field.h"
+#include "engine/stress/far_field.h"
 #include "engine/stress/stress_field.h"
 
 namespace sherd {
@@ -32,6 +32,7 @@ class StressState final : public StressField {
  private:
   // Of the homogeneous problem at x; `face`: the face x lies on, for the limit from inside, or kNone.
   Mat3 displacement_gradient(const Vec3& x, std::uint32_t face) const;
+  void displacement_gradients(std::span<const Vec3> x, std::span<const std::uint32_t> face, std::span<Mat3> out) const;
 
   const ElasticBody& body_;
   const SurfaceRecovery& recovery_;
@@ -41,7 +42,8 @@ class StressState final : public StressField {
   std::vector<Sym3> corner_stress_;
   std::vector<std::uint32_t> worst_corner_;
   std::vector<ElementField> elements_;  // per triangle
-  Load patch_load_;                     // the contact patches alone
+  std::unique_ptr<FarField> far_;
+  Load patch_load_;  // the contact patches alone
   std::vector<PanelFrame> load_panels_;
   Vec3Column load_traction_;
 };
