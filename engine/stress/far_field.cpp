@@ -7,17 +7,21 @@
 namespace sherd {
 namespace {
 
-// In longest edges from the centroid. Gradients of constants err by 7e-5 with seven points at two edges and by 3e-4
-// with three at five (design notes, elastostatics section 2), a panel; the moments make the rest exact.
-constexpr Real kNear = 2, kMiddle = 5;
+// Closed form and seven points reach less far than in the operator, in longest edges from the centroid: gradients of
+// constants err by 7e-5 with seven points at two edges and by 3e-4 with three at five (design notes, elastostatics
+// section 2), a panel, which is below what the displacement brings along.
+constexpr Real kNearLess = 1, kMiddleLess = 3;
 
 }  // namespace
 
-FarField::FarField(const Boundary& b, const std::vector<ElementField>& elements, const Elastic& material)
+FarField::FarField(const Boundary& b, const std::vector<ElementField>& elements, const Elastic& material,
+                   const QuadratureOptions& options)
     : boundary_(b), elements_(elements), material_(material) {
+  const Real near = std::max(options.closed_form - kNearLess, 1.0),
+             middle = std::max(options.gauss7 - kMiddleLess, near);
   for (std::size_t t = 0; t < elements.size(); ++t) {
     const PanelFrame& f = b.panels[t];
-    near2_.push_back(kNear * kNear * f.longest2), middle2_.push_back(kMiddle * kMiddle * f.longest2);
+    near2_.push_back(near * near * f.longest2), middle2_.push_back(middle * middle * f.longest2);
     least2_ = std::min(least2_, 1e-12 * f.area);
     for (std::size_t q = 0; q < 3; ++q) {
       const TrianglePoint& p = kGauss3[q];

@@ -11,7 +11,8 @@ namespace sherd {
 class FarField {
  public:
   // Keeps references to both.
-  FarField(const Boundary& boundary, const std::vector<ElementField>& elements, const Elastic& material);
+  FarField(const Boundary& boundary, const std::vector<ElementField>& elements, const Elastic& material,
+           const QuadratureOptions& options);
   // Up to kLanes points; face[k]: the triangle point k lies on, for the limit from inside, or kNone. [i][k] = u_i,k.
   void gradients(std::span<const Vec3> x, std::span<const std::uint32_t> face, std::span<Mat3> out) const;
 

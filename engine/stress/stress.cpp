@@ -34,7 +34,7 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
     for (std::size_t a = 0; a < u.size(); ++a) u[a] = nodes[body.reconstruction().nodes(t)[a]];
     elements_[t] = ElementField(b.panels[t], u, traction_polynomial(b, load, particular_, t), body.material());
   });
-  far_ = std::make_unique<FarField>(b, elements_, body.material());
+  far_ = std::make_unique<FarField>(b, elements_, body.material(), body.options().quadrature);
   patch_load_.patches = load.patches;
   for (const auto& c : load.panels.corners) load_panels_.push_back(make_panel(c[0], c[1], c[2]));
   // Recovered is what the particular solution leaves: of the corners of a faceted body neither the tangent plane nor
