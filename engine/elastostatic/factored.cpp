@@ -13,7 +13,7 @@ constexpr Eigen::Index kPanel = 64, kStrip = 192;  // columns factored at once, 
 }  // namespace
 
 template <class Scalar>
-FactoredInverse::FactoredInverse(const DenseOperator<Scalar>& a, const RigidModes& modes, Real shift) {
+FactoredInverse::FactoredInverse(const DenseOperator<Scalar>& a, const RigidModes& modes, const CavityModes& cavities) {
   const auto n = static_cast<Eigen::Index>(a.size());
   lu_.resize(n, n);
   // Columns in strips, so that neither the rows read nor the columns written thrash the cache.
@@ -28,7 +28,9 @@ FactoredInverse::FactoredInverse(const DenseOperator<Scalar>& a, const RigidMode
           a.rows(static_cast<std::size_t>(i / 3)).subspan(static_cast<std::size_t>(i % 3 * n));
       for (Eigen::Index j = first; j < last; ++j) {
         Real sum = static_cast<Real>(values[static_cast<std::size_t>(j)]);
-        for (std::size_t m = 0; m < 6; ++m) sum += shift * row[m] * coefficient[static_cast<std::size_t>(j - first)][m];
+        for (std::size_t m = 0; m < 6; ++m)
+          sum += CompletedOperator::kShift * row[m] * coefficient[static_cast<std::size_t>(j - first)][m];
+        if (cavities.count() > 0) sum += cavities.entry(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
         lu_(i, j) = static_cast<float>(sum);
       }
     }
@@ -95,7 +97,7 @@ void FactoredInverse::apply(std::span<const Real> r, std::span<Real> z) const {
   for (Eigen::Index i = 0; i < n; ++i) z[static_cast<std::size_t>(i)] = size * static_cast<Real>(v[i]);
 }
 
-template FactoredInverse::FactoredInverse(const DenseOperator<float>&, const RigidModes&, Real);
-template FactoredInverse::FactoredInverse(const DenseOperator<double>&, const RigidModes&, Real);
+template FactoredInverse::FactoredInverse(const DenseOperator<float>&, const RigidModes&, const CavityModes&);
+template FactoredInverse::FactoredInverse(const DenseOperator<double>&, const RigidModes&, const CavityModes&);
 
 }  // namespace sherd

@@ -4,6 +4,7 @@
 #pragma once
 #include <Eigen/Core>
 
+#include "engine/elastostatic/cavities.h"
 #include "engine/elastostatic/dense_operator.h"
 #include "engine/elastostatic/rigid_modes.h"
 
@@ -14,7 +15,7 @@ class FactoredInverse {
   // 2/3 n^3 operations and n^2 floats. Blocked, with partial pivoting; parallel, the same bits for any number of
   // threads.
   template <class Scalar>
-  FactoredInverse(const DenseOperator<Scalar>& a, const RigidModes& modes, Real shift);
+  FactoredInverse(const DenseOperator<Scalar>& a, const RigidModes& modes, const CavityModes& cavities);
   static std::size_t bytes(std::size_t n) { return n * n * sizeof(float); }
   // z = (L U)^-1 P r in single precision.
   void apply(std::span<const Real> r, std::span<Real> z) const;

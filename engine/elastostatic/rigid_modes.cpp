@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/elastostatic/cavities.h"
 #include "kernels/core/parallel.h"
 
 namespace sherd {
@@ -54,6 +55,12 @@ std::array<Real, 6> RigidModes::row(std::size_t i) const {
   return c;
 }
 
+void CompletedOperator::apply(std::span<const Real> x, std::span<Real> y) const {
+  a_.apply(x, y);
+  modes_.add(y, modes_.coefficients(x), kShift);
+  if (cavities_) cavities_->add(x, y);
+}
+
 void CompletedOperator::apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const {
   a_.apply_block(x, count, y);
   const std::size_t n = size();
@@ -61,6 +68,7 @@ void CompletedOperator::apply_block(std::span<const Real> x, std::size_t count, 
   for (std::size_t j = 0; j < count; ++j) {
     for (std::size_t i = 0; i < n; ++i) in[i] = x[i * count + j], out[i] = y[i * count + j];
     modes_.add(out, modes_.coefficients(in), kShift);
+    if (cavities_) cavities_->add(in, out);
     for (std::size_t i = 0; i < n; ++i) y[i * count + j] = out[i];
   }
 }

@@ -24,23 +24,25 @@ class RigidModes {
   std::vector<Real> weight_;               // per point
 };
 
+class CavityModes;
+
+// With the six rigid motions and one equation a cavity (cavities.h; none for the indirect formulation).
 class CompletedOperator final : public LinearOperator {
  public:
   // Positive like the spectrum of A (1/2 + compact on smooth bodies); 0.3 .. 0.5 gives the least condition number
   // (measured, design notes section 3).
   static constexpr Real kShift = 0.4;
-  CompletedOperator(const LinearOperator& a, const RigidModes& modes) : a_(a), modes_(modes) {}
+  CompletedOperator(const LinearOperator& a, const RigidModes& modes, const CavityModes* cavities = nullptr)
+      : a_(a), modes_(modes), cavities_(cavities) {}
   std::size_t size() const override { return a_.size(); }
-  void apply(std::span<const Real> x, std::span<Real> y) const override {
-    a_.apply(x, y);
-    modes_.add(y, modes_.coefficients(x), kShift);
-  }
+  void apply(std::span<const Real> x, std::span<Real> y) const override;
   void apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const override;
   Mat3 diagonal_block(std::size_t p) const override { return a_.diagonal_block(p); }
 
  private:
   const LinearOperator& a_;
   const RigidModes& modes_;
+  const CavityModes* cavities_;
 };
 
 }  // namespace sherd

@@ -45,7 +45,8 @@ ElasticBody::ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const
       boundary_(mesh, options.quadrature),
       reconstruction_(boundary_.mesh, material.nu, options.reconstruction),
       testing_(boundary_, reconstruction_, vertex_tests(boundary_.mesh, options)),
-      modes_(boundary_.mesh.vertices, boundary_.vertex_area) {
+      modes_(boundary_.mesh.vertices, boundary_.vertex_area),
+      cavities_(boundary_, reconstruction_, modes_) {
   reason_ = too_large(mesh.triangle_count(), 3 * mesh.vertex_count(), options.double_storage, options.max_bytes);
   if (!reason_.empty()) return;
   if (options.double_storage)
@@ -59,11 +60,9 @@ void ElasticBody::build() {
   auto dense = std::make_unique<DenseOperator<Scalar>>(boundary_.mesh.vertex_count());
   assemble_direct(boundary_, reconstruction_, material_.nu, testing_, *dense);
   inverse_blocks_ = inverse_diagonal_blocks(*dense);
-  make_factors_ = [this, &a = *dense] {
-    return std::make_unique<FactoredInverse>(a, modes_, CompletedOperator::kShift);
-  };
+  make_factors_ = [this, &a = *dense] { return std::make_unique<FactoredInverse>(a, modes_, cavities_); };
   operator_ = std::move(dense);
-  completed_ = std::make_unique<CompletedOperator>(*operator_, modes_);
+  completed_ = std::make_unique<CompletedOperator>(*operator_, modes_, &cavities_);
   const std::size_t n = operator_->size();
   const bool factors = options_.preconditioning == Preconditioning::kFactored ||
                        (options_.preconditioning == Preconditioning::kAuto &&
@@ -140,6 +139,7 @@ ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& p
       b[3 * i + static_cast<std::size_t>(k)] = rhs[i][k];
       size2 += rhs[i][k] * rhs[i][k];
     }
+  cavities_.add_load(boundary_, load, particular, material_.mu, b);
   if (!std::isfinite(size2)) {
     s.reason = "the load is not finite";
     return s;

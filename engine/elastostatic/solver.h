@@ -81,6 +81,7 @@ class ElasticBody {
   Reconstruction reconstruction_;
   Testing testing_;
   RigidModes modes_;
+  CavityModes cavities_;
   std::unique_ptr<LinearOperator> operator_;
   std::unique_ptr<CompletedOperator> completed_;
   std::vector<Mat3> inverse_blocks_;  // of the diagonal, for the preconditioner
