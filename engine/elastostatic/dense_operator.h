@@ -2,9 +2,10 @@
 //   (A u)(x_p) = D[u - u(x_p)] + 2 mu V_E[M u] - V_L[M u]  at every vertex x_p,
 // with D the Laplace double layer, V_E and V_L the Kelvin and Laplace single layers, M the tangential Guenter operator
 // (M u)_i = n_j d_i u_j - n_i d_j u_j. Equal to V_E[t] for the displacement u of a body with tractions t (Somigliana's
-// identity with the traction kernel integrated by parts; Kupradze 1979). Independent of mu. Annihilates rigid motions
-// exactly, is exact for affine u. Near and far field use the same form: the traction-kernel form agrees only over a
-// closed surface.
+// identity with the traction kernel integrated by parts; Kupradze 1979). Independent of mu. Annihilates
+// translations exactly and rotations to the quadrature's accuracy (1e-8 with the default rules), which is also how
+// exact it is for affine u. Near and far field use the same form: the traction-kernel form agrees only over a closed
+// surface.
 #pragma once
 #include <functional>
 #include <string>

@@ -43,6 +43,10 @@ std::array<Real, 6> RigidModes::coefficients(std::span<const Real> x) const {
   return c;
 }
 
+Real RigidModes::size(std::span<const Real> x) const {
+  return std::sqrt(parallel_sum<Real>(x.size(), 8192, [&](std::size_t i) { return weight_[i / 3] * x[i] * x[i]; }));
+}
+
 std::array<Real, 6> RigidModes::coefficients_of_unit(std::size_t j) const {
   std::array<Real, 6> c = row(j);
   for (Real& v : c) v *= weight_[j / 3];

@@ -13,6 +13,7 @@ class RigidModes {
   RigidModes(const Vec3Column& points, const std::vector<Real>& weight);
   // The six coefficients R^T W x; x interleaved (3 entries a point).
   std::array<Real, 6> coefficients(std::span<const Real> x) const;
+  Real size(std::span<const Real> x) const;  // sqrt(x^T W x): rms over the points
   // R^T W e_j of the unit vector j, and the row i of R: the entries of R R^T W one by one.
   std::array<Real, 6> coefficients_of_unit(std::size_t j) const;
   std::array<Real, 6> row(std::size_t i) const;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "engine/elastostatic/direct_assembly.h"
 #include "engine/mesh/thickness.h"
 #include "kernels/quadrature/gauss.h"
@@ -13,14 +15,12 @@ namespace {
 std::vector<VertexTest> vertex_tests(const SurfaceMesh& mesh, const ElasticOptions& o) {
   const bool linear = o.reconstruction.element == Element::kLinear;
   std::vector<VertexTest> out(mesh.vertex_count(),
-                              o.testing == TestingRule::kGalerkin ? VertexTest::kSixPoints : VertexTest::kCollocation);
+                              o.testing == TestingRule::kGalerkin ? VertexTest::kGalerkin : VertexTest::kCollocation);
   if (o.testing != TestingRule::kAuto || linear) return out;
   const std::vector<Real> thickness = wall_thickness(mesh).face, edge = local_edge_length(mesh);
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     if (edge[t] <= o.thin_ratio * thickness[t]) continue;
-    const VertexTest test =
-        edge[t] > o.six_point_ratio * thickness[t] ? VertexTest::kSixPoints : VertexTest::kThreePoints;
-    for (const std::uint32_t v : mesh.triangles[t]) out[v] = std::max(out[v], test);
+    for (const std::uint32_t v : mesh.triangles[t]) out[v] = VertexTest::kGalerkin;
   }
   return out;
 }
@@ -123,6 +123,25 @@ ParticularSolution ElasticBody::particular(const Load& load) const {
   return {load.body_force, material_, symmetric_part(moment) * (1 / signed_volume(boundary_.mesh))};
 }
 
+// Of the whole displacement without its rigid motion, rms over the surface.
+Real ElasticBody::strained_size(std::span<const Real> homogeneous, const ParticularSolution& particular) const {
+  std::vector<Real> u(homogeneous.begin(), homogeneous.end());
+  for (std::size_t i = 0; i < boundary_.mesh.vertex_count(); ++i) {
+    const Vec3 p = particular.displacement(boundary_.mesh.vertices[i]);
+    u[3 * i] += p.x, u[3 * i + 1] += p.y, u[3 * i + 2] += p.z;
+  }
+  modes_.add(u, modes_.coefficients(u), -1);
+  return modes_.size(u);
+}
+
+std::size_t ElasticBody::bytes() const {
+  if (!ready()) return 0;
+  const std::size_t n = operator_->size();
+  const std::lock_guard lock(factoring_);
+  return n * n * (options_.double_storage ? sizeof(double) : sizeof(float)) +
+         (factored_ ? FactoredInverse::bytes(n) : 0);
+}
+
 ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& particular) const {
   ElasticSolution s;
   if (!ready()) {
@@ -147,10 +166,10 @@ ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& p
   s.krylov = iterate(b, x, s.factored);
   // The rigid part of the solution is arbitrary; its coefficient measures what did not balance.
   const std::array<Real, 6> c = modes_.coefficients(x);
-  Real rigid2 = 0;
-  for (const Real v : c) rigid2 += v * v;
-  s.incompatibility = size2 > 0 ? CompletedOperator::kShift * std::sqrt(rigid2 * static_cast<Real>(n) / size2) : 0;
   modes_.add(x, c, -1);
+  const Real rigid = std::sqrt(std::inner_product(c.begin(), c.end(), c.begin(), Real{0})),
+             strained = strained_size(x, particular);
+  s.incompatibility = rigid > 0 ? rigid / std::hypot(rigid, strained) : 0;
   s.displacement.resize(n);
   bool finite = true;
   for (std::size_t i = 0; i < n; ++i) {

@@ -27,9 +27,6 @@ struct ElasticOptions {
   ReconstructionOptions reconstruction;
   TestingRule testing = TestingRule::kAuto;
   Real thin_ratio = 0.6;
-  // Above it six Gauss points a panel, below three. Three err by 20 to 30 % on plates some forty walls wide (measured;
-  // they pass on narrow ones), so they are never chosen by default.
-  Real six_point_ratio = 0;
   QuadratureOptions quadrature;
   KrylovOptions krylov;
   DeflationOptions deflation;
@@ -44,7 +41,9 @@ struct ElasticSolution {
   Vec3Column displacement;   // of the homogeneous problem at vertices, m (add particular.displacement for the whole)
   KrylovResult krylov;       // iterations and products of all attempts
   bool factored = false;     // preconditioned by triangular factors
-  Real incompatibility = 0;  // |R^T W b'| / |b'|: what the completion absorbed of a load out of balance
+  // Share of the displacement (rms over the surface, 0 to 1) that is the rigid motion the completion absorbed: what of
+  // the load did not balance, and the discretisation's own imbalance.
+  Real incompatibility = 0;
 };
 
 // Everything that depends on the mesh and the material alone: kept as long as the mesh lives, one solve per load.
@@ -65,6 +64,7 @@ class ElasticBody {
   const Elastic& material() const { return material_; }
   const ElasticOptions& options() const { return options_; }
   const LinearOperator& system() const { return *operator_; }  // without completion
+  std::size_t bytes() const;                                    // of the operator and its factors
   const Reconstruction& reconstruction() const { return reconstruction_; }
   const Testing& testing() const { return testing_; }
 
@@ -74,6 +74,7 @@ class ElasticBody {
   // Makes the factors when they are not there yet; false when they do not fit max_bytes or a pivot vanished.
   bool factor() const;
   KrylovResult iterate(std::span<const Real> b, std::span<Real> x, bool& factored) const;
+  Real strained_size(std::span<const Real> homogeneous, const ParticularSolution& particular) const;
 
   Elastic material_;
   ElasticOptions options_;

@@ -13,10 +13,10 @@ Testing::Testing(const Boundary& boundary, const Reconstruction& reconstruction,
   for (std::uint32_t v = 0; v < tests_.size(); ++v)
     if (!galerkin(v)) collocated_.push_back(v);
   if (collocated_.size() == tests_.size()) return;
-  std::vector<VertexTest> rule(boundary.panels.size(), VertexTest::kCollocation);
+  std::vector<char> tested(boundary.panels.size(), 0);
   const Reconstruction& r = reconstruction;
-  parallel_for(rule.size(), 64, [&](std::size_t t) {
-    const auto see = [&](std::uint32_t v) { rule[t] = std::max(rule[t], tests_[v]); };
+  parallel_for(tested.size(), 64, [&](std::size_t t) {
+    const auto see = [&](std::uint32_t v) { tested[t] |= galerkin(v); };
     for (const std::uint32_t node : r.nodes(t)) {
       if (node < r.vertex_count()) {
         see(node);
@@ -28,16 +28,10 @@ Testing::Testing(const Boundary& boundary, const Reconstruction& reconstruction,
     }
   });
   std::vector<std::uint32_t> panels;
-  for (std::uint32_t t = 0; t < rule.size(); ++t)
-    if (rule[t] != VertexTest::kCollocation) panels.push_back(t);
+  for (std::uint32_t t = 0; t < tested.size(); ++t)
+    if (tested[t]) panels.push_back(t);
   for (const std::uint32_t t : curve_order(boundary, std::move(panels))) {
-    const auto add = [&](const auto& points) {
-      for (const TrianglePoint& p : points) gauss_.push_back({t, p.b, p.c, p.weight * boundary.panels[t].area});
-    };
-    if (rule[t] == VertexTest::kSixPoints)
-      add(kGauss6);
-    else
-      add(kGauss3);
+    for (const TrianglePoint& p : kGauss6) gauss_.push_back({t, p.b, p.c, p.weight * boundary.panels[t].area});
   }
 }
 
@@ -83,9 +77,9 @@ Vec3Column Testing::apply(const Vec3Column& values) const {
   }
   Vec3Column rows(tests_.size());
   if (!gauss_.empty()) {
-    const Vec3Column tested = reconstruction_.apply_transpose(nodes);
+    const Vec3Column means = reconstruction_.apply_transpose(nodes);
     for (std::size_t v = 0; v < tests_.size(); ++v)
-      if (galerkin(v)) rows.set(v, tested[v] / boundary_.vertex_area[v]);
+      if (galerkin(v)) rows.set(v, means[v] / boundary_.vertex_area[v]);
   }
   for (std::size_t i = 0; i < collocated_.size(); ++i) rows.set(collocated_[i], values[i]);
   return rows;

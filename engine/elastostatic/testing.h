@@ -1,6 +1,7 @@
 // Where the integral equation is tested, and how its residual becomes one vector equation a vertex. Collocation asks
 // for r(x_v) = 0 at the vertex. Petrov-Galerkin asks for the mean of r against the reconstructed shape function of the
-// vertex: sum over panels and Gauss points of w N_v(x)^T r(x) / a_v = 0. Collocation samples the residual exactly where
+// vertex: sum over panels and six Gauss points each of w N_v(x)^T r(x) / a_v = 0 (three points a panel err by 20 to 30 %
+// on plates some forty walls wide, measured). Collocation samples the residual exactly where
 // the interpolation error vanishes, which bending of thin walls turns into tens of percent; averaging it removes that
 // (design notes, thin-walls sections 0 and 1). Rows may be mixed: both are scaled alike.
 #pragma once
@@ -10,7 +11,7 @@
 namespace sherd {
 
 // How each vertex is tested.
-enum class VertexTest : std::uint8_t { kCollocation, kThreePoints, kSixPoints };
+enum class VertexTest : std::uint8_t { kCollocation, kGalerkin };
 
 class Testing {
  public:
@@ -20,7 +21,7 @@ class Testing {
     Real weight;  // of the rule times the panel's area, m^2
   };
 
-  // A panel gets the finer rule that any vertex whose shape function reaches it asks for.
+  // Gauss points lie on every panel that the shape function of a kGalerkin vertex reaches.
   Testing(const Boundary& boundary, const Reconstruction& reconstruction, const std::vector<VertexTest>& tests);
 
   bool galerkin(std::size_t vertex) const { return tests_[vertex] != VertexTest::kCollocation; }

@@ -311,6 +311,7 @@ FractureResult fracture_solid(Solid& solid, const MassProperties& clean_mass, co
     solution = elastic->solve(load, particular);
   }
   result.krylov = solution.krylov, result.incompatibility = solution.incompatibility;
+  result.factored = solution.factored;
   result.solved = solution.ok, result.reason = solution.reason;
   if (!solution.ok) return result;
   std::vector<CrackSeed> seeds;

@@ -56,7 +56,8 @@ struct FractureResult {
   KrylovResult krylov;
   std::size_t triangles = 0, panels = 0;
   std::size_t unknowns = 0, galerkin_vertices = 0;  // of the system; vertices with Petrov-Galerkin rows
-  Real incompatibility = 0;
+  Real incompatibility = 0;  // solver.h
+  bool factored = false;     // preconditioned by triangular factors
   CrackSeed strongest;    // largest principal stress on the surface
   std::size_t seeds = 0;  // local maxima above the strength
   // Of the fracture:

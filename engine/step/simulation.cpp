@@ -384,7 +384,7 @@ void Simulation::Impl::limit_operators() {
     std::size_t bytes = 0, oldest = companions.size();
     for (std::size_t i = 0; i < companions.size(); ++i) {
       if (!companions[i].solid->has_elastic()) continue;
-      bytes += operator_bytes(companions[i].solid->mesh());
+      bytes += companions[i].solid->elastic_bytes();
       if (oldest == companions.size() || companions[i].last_solve < companions[oldest].last_solve) oldest = i;
     }
     if (bytes <= kOperatorBudget || oldest == companions.size()) return;

@@ -39,6 +39,7 @@ class Solid {
   // Built with the first call: one material a body.
   const ElasticBody& elastic(const Elastic& material, const ElasticOptions& options);
   bool has_elastic() const { return elastic_ != nullptr; }
+  std::size_t elastic_bytes() const { return elastic_ ? elastic_->bytes() : 0; }
   void drop_elastic() { elastic_.reset(); }  // frees the dense operator
 
  private:

@@ -74,6 +74,7 @@ Json event_json(const EventRecord& e) {
                 {"iterations", r.krylov.iterations},
                 {"products", r.krylov.products},
                 {"residual", r.krylov.residual},
+                {"factored", r.factored},
                 {"incompatibility", r.incompatibility},
                 {"max_principal", r.strongest.stress.value},
                 {"max_principal_at", vector_json(r.strongest.position)},

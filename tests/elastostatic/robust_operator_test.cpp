@@ -15,12 +15,10 @@ enum class Rows { kCollocation, kGalerkin, kMixed };
 
 std::vector<VertexTest> tests_of(const SurfaceMesh& mesh, Rows rows) {
   std::vector<VertexTest> out(mesh.vertex_count(),
-                              rows == Rows::kGalerkin ? VertexTest::kSixPoints : VertexTest::kCollocation);
+                              rows == Rows::kGalerkin ? VertexTest::kGalerkin : VertexTest::kCollocation);
   if (rows == Rows::kMixed)
-    for (std::size_t v = 0; v < out.size(); ++v) {
-      const Real x = mesh.vertices[v].x;
-      out[v] = x > 0.2 ? VertexTest::kSixPoints : (x > -0.2 ? VertexTest::kThreePoints : VertexTest::kCollocation);
-    }
+    for (std::size_t v = 0; v < out.size(); ++v)
+      if (mesh.vertices[v].x > 0) out[v] = VertexTest::kGalerkin;
   return out;
 }
 
