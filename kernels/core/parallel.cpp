@@ -5,7 +5,43 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
+
 namespace sherd {
+namespace {
+
+// One digit of a radix sort. 1024 open cache lines fit a second-level cache.
+constexpr int kDigitBits = 10;
+constexpr std::size_t kDigits = std::size_t{1} << kDigitBits, kSortGrain = std::size_t{1} << 16;
+using DigitPlaces = std::array<std::size_t, kDigits>;
+
+std::size_t digit(std::uint64_t key, int shift) {
+  return (key >> shift) & (kDigits - 1);
+}
+
+// Stable: chunks write behind one another within each digit.
+void sort_by_digit(const std::vector<KeyedIndex>& from, std::vector<KeyedIndex>& to, int shift) {
+  std::vector<DigitPlaces> places((from.size() + kSortGrain - 1) / kSortGrain);
+  parallel_for_chunks(from.size(), kSortGrain, [&](std::size_t begin, std::size_t end) {
+    DigitPlaces& count = places[begin / kSortGrain];
+    count.fill(0);
+    for (std::size_t i = begin; i < end; ++i) ++count[digit(from[i].key, shift)];
+  });
+  std::size_t next = 0;
+  for (std::size_t d = 0; d < kDigits; ++d)
+    for (DigitPlaces& chunk : places) {
+      const std::size_t count = chunk[d];
+      chunk[d] = next;
+      next += count;
+    }
+  parallel_for_chunks(from.size(), kSortGrain, [&](std::size_t begin, std::size_t end) {
+    DigitPlaces& place = places[begin / kSortGrain];
+    for (std::size_t i = begin; i < end; ++i) to[place[digit(from[i].key, shift)]++] = from[i];
+  });
+}
+
+}  // namespace
 
 struct ThreadLimit::Impl {
   tbb::global_control control;
@@ -29,6 +65,21 @@ void parallel_for_chunks(std::size_t n, std::size_t grain, const std::function<v
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks, 1), [&](const tbb::blocked_range<std::size_t>& r) {
     for (std::size_t c = r.begin(); c != r.end(); ++c) run(c);
   });
+}
+
+void parallel_sort(std::vector<KeyedIndex>& items) {
+  if (items.size() < kDigits) {
+    std::ranges::stable_sort(items, {}, &KeyedIndex::key);
+    return;
+  }
+  std::uint64_t varying = 0;
+  for (const KeyedIndex& item : items) varying |= item.key ^ items.front().key;
+  std::vector<KeyedIndex> other(items.size());
+  for (int shift = 0; shift < 64; shift += kDigitBits)
+    if (digit(varying, shift) != 0) {
+      sort_by_digit(items, other, shift);
+      items.swap(other);
+    }
 }
 
 }  // namespace sherd

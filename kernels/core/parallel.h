@@ -3,6 +3,7 @@
 // number of threads.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -45,5 +46,14 @@ T parallel_sum(std::size_t n, std::size_t grain, const F& value) {
   for (const T& p : partial) total += p;
   return total;
 }
+
+struct KeyedIndex {
+  std::uint64_t key;
+  std::uint32_t index;
+};
+
+// Sorts by key, equal keys in the order given, so the result is unique. Linear in the number of items; takes as much
+// memory again while it runs.
+void parallel_sort(std::vector<KeyedIndex>& items);
 
 }  // namespace sherd
