@@ -1,60 +1,13 @@
 // Sums over pairs of points, all sources to all targets: the near field, the direct sum, and the translation of points
 // to check surfaces and back. One target a SIMD lane, sources broadcast. r = x - y (target minus source), l = |r|,
 // e = r / l. A pair at l = 0 adds nothing. The bodies (kernels/fundamental/pair_bodies.h) are neutral between host and
-// device; this header says what they mean.
+// device; kernels/fundamental/pair_sums.h says what they mean and how the arrays lie.
 #pragma once
 #include <cstddef>
-#include <cstdint>
+
+#include "kernels/fundamental/pair_sums.h"
 
 namespace sherd::fmm {
-
-// Strengths a source carries -> numbers a target receives. a, b, c, lambda, mu: PairConstants.
-enum class PairSum : std::uint8_t {
-  kLaplaceValue,     // q -> c q / l
-  kLaplaceGradient,  // q -> that and its gradient: 4 numbers
-  kDipoleValue,      // q, n (3) -> c q (r . n) / l^3
-  kDipoleGradient,   // q, n (3) -> that and its gradient: 4 numbers
-  kKelvinValue,      // f (3) -> u = (a f + b e (e . f)) / l
-  kKelvinGradient,   // f (3) -> u_i,k at [3 i + k]
-  kKelvinStress,     // f (3) -> lambda u_m,m d_ik + mu (u_i,k + u_k,i): xx, yy, zz, yz, xz, xy
-  kKelvinTraction,   // f (3) -> that stress times the target's normal
-  kElasticValue,     // f (3), w (3), n (3) -> (a f + b e (e . f)) / l + c w (r . n) / l^3
-  kElasticGradient,  // f (3), g (3), w (3), n (3) -> gradient [3 i + k] of (a f + b e (e . f) + c g) / l + c w (r . n)
-                     // / l^3
-};
-inline constexpr std::size_t kPairSums = 10, kMaxStrengths = 12, kMaxOutputs = 9;
-
-struct PairShape {
-  std::size_t strengths, outputs;
-  bool target_normals;
-};
-constexpr PairShape pair_shape(PairSum s) {
-  constexpr PairShape shapes[kPairSums] = {{1, 1, false}, {1, 4, false}, {4, 1, false}, {4, 4, false}, {3, 3, false},
-                                           {3, 9, false}, {3, 6, false}, {3, 3, true},  {9, 3, false}, {12, 9, false}};
-  return shapes[static_cast<std::size_t>(s)];
-}
-
-template <class T>
-struct PairConstants {
-  T a = 1, b = 1, c = 1, lambda = 0, mu = 0;
-};
-
-// Arrays of `count` numbers each.
-template <class T>
-struct PairSources {
-  std::size_t count;
-  const T* x[3];
-  const T* strength[kMaxStrengths];
-};
-
-// Arrays of `count` numbers each, count a multiple of kPairPad (fill up with any finite points).
-inline constexpr std::size_t kPairPad = 16;
-template <class T>
-struct PairTargets {
-  std::size_t count;
-  const T* x[3];
-  const T* normal[3];  // where the sum needs it
-};
 
 // out[k][i] += what target i (at x + shift) receives as number k. The order of the sources fixes the rounding, nothing
 // else does.

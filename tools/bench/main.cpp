@@ -10,6 +10,7 @@
 
 #include "kernels/core/error.h"
 #include "kernels/core/parallel.h"
+#include "tools/bench/pairs.h"
 #include "tools/bench/stress.h"
 
 namespace {
@@ -82,6 +83,18 @@ int run_stress(StressCommand& c) {
   }
 }
 
+CLI::App* add_pairs(CLI::App& app, sherd::bench::PairsOptions& o) {
+  CLI::App* pairs = app.add_subcommand("pairs", "pairs a second of the sums over pairs of points");
+  pairs->add_option("--targets", o.targets, "of a block")->check(CLI::PositiveNumber)->capture_default_str();
+  pairs->add_option("--sources", o.sources, "of a block")->check(CLI::PositiveNumber)->capture_default_str();
+  pairs->add_option("--seconds", o.seconds, "CPU time a measurement")
+      ->check(CLI::Range(1e-4, 10.0))
+      ->capture_default_str();
+  pairs->add_option("--json", o.json, "file for the numbers");
+  pairs->footer("Examples:\n  sherd-bench pairs\n  sherd-bench pairs --targets 64 --sources 1000 --json out.json");
+  return pairs;
+}
+
 int run_micro(const std::string& program, std::vector<std::string> rest) {
   std::string name = program;
   std::vector<char*> arguments{name.data()};
@@ -105,6 +118,9 @@ int main(int argc, char** argv) {
       "Examples:\n  sherd-bench micro\n  sherd-bench micro --benchmark_filter=Operator --benchmark_format=json");
   StressCommand command;
   CLI::App* stress = add_stress(app, command);
+  sherd::bench::PairsOptions pairs_options;
+  CLI::App* pairs = add_pairs(app, pairs_options);
   CLI11_PARSE(app, argc, argv);
+  if (*pairs) return sherd::bench::run_pairs(pairs_options);
   return *stress ? run_stress(command) : run_micro(argv[0], micro->remaining());
 }
