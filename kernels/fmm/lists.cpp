@@ -162,13 +162,13 @@ void walk(const Tree& tree, const ListOptions& options, const Part& empty, const
   }
 }
 
+// Far rows ascend as they come: from the split boxes among those that touch the parent, which ascend by induction.
 struct ListPart {
   Rows<Index> near, multipole, local;
   Rows<FarPair> far;
 
   void add(Index, Visit& v) {
     for (std::vector<Index>* row : {&v.near, &v.multipole, &v.local}) std::ranges::sort(*row);
-    std::ranges::sort(v.far, {}, &FarPair::source);
     add_row(near, v.near), add_row(multipole, v.multipole), add_row(local, v.local), add_row(far, v.far);
   }
 };

@@ -104,7 +104,7 @@ Real largest(const Vec3& v) {
 // cut. The margin is no power of two of the side, so the lowest points lie in no cut either. The cube is never smaller
 // than 2^-26 of the largest coordinate, so that the smallest boxes (2^-46) stay well above the coordinates' rounding,
 // nor so small that their sides leave the normal numbers.
-Grid grid_of(const Bounds& bounds, SortedPoints& points) {
+Grid grid_of(const Bounds& bounds, Real stretch, SortedPoints& points) {
   constexpr Real kRelative = 0x1p-26, kSmallest = 0x1p-1000, kMargin = 1.3 * 0x1p-12;
   const Real reach = std::max(largest(bounds.low), largest(bounds.high));
   if (reach == 0) {
@@ -118,7 +118,7 @@ Grid grid_of(const Bounds& bounds, SortedPoints& points) {
   grid.low = bounds.low * grid.scale;
   const Real extent = largest(bounds.high * grid.scale - grid.low);
   const Real size =
-      std::max(std::max(extent, kRelative * (reach * grid.scale)) * (1 + 0x1p-10), kSmallest * grid.scale);
+      std::max(std::max(extent, kRelative * (reach * grid.scale)) * (stretch * (1 + 0x1p-10)), kSmallest * grid.scale);
   grid.margin = size * kMargin;
   grid.cells = std::ldexp(1.0, kMaxDepth) / size;
   points.size = std::ldexp(size, exponent);
@@ -145,15 +145,16 @@ std::array<Tree::Index, 8> octant_ends(const std::vector<std::uint64_t>& keys, c
 
 }  // namespace
 
-SortedPoints::SortedPoints(const Vec3Column& sources, const Vec3Column& targets)
+SortedPoints::SortedPoints(const Vec3Column& sources, const Vec3Column& targets, Real stretch)
     : same(&sources == &targets || sources == targets) {
+  SHERD_CHECK(stretch >= 1 && stretch <= 2, "stretch {}", stretch);
   Bounds bounds = bounds_of(sources, "source");
   if (!same) {
     const Bounds more = bounds_of(targets, "target");
     bounds.low = min(bounds.low, more.low), bounds.high = max(bounds.high, more.high);
   }
   if (sources.empty() && targets.empty()) bounds.low = bounds.high = Vec3{};
-  const Grid grid = grid_of(bounds, *this);
+  const Grid grid = grid_of(bounds, stretch, *this);
   sort_points(sources, grid, source_keys, source_order);
   if (same) {
     target_keys = source_keys, target_order = source_order;

@@ -16,7 +16,9 @@ inline constexpr int kMaxDepth = 20;
 struct SortedPoints {
   // Coordinates finite and at most 1e307, fewer than 2^32 - 1 a set (throws InputError otherwise); in any unit. Either
   // set may be empty; equal sets are sorted once.
-  SortedPoints(const Vec3Column& sources, const Vec3Column& targets);
+  // stretch (1 .. 2) enlarges the root cube: on a surface a level more or less divides the points of a leaf by four, so
+  // the sizes in between are reached by the root's size only.
+  SortedPoints(const Vec3Column& sources, const Vec3Column& targets, Real stretch = 1);
 
   Vec3 low;           // corner of the root cube
   Real size = 0;      // its side, > 0 even for one point

@@ -17,6 +17,17 @@ std::vector<ListOptions> all_options() {
   return {{12, 12, 0}, {0, 0, 0}, {1000000, 1000000, 0}, {8, 20, 60}, {5, 3, 1000}};
 }
 
+void expect_same_lists(const InteractionLists& a, const InteractionLists& b) {
+  EXPECT_EQ(a.near.begin, b.near.begin);
+  EXPECT_EQ(a.near.item, b.near.item);
+  EXPECT_EQ(a.far.begin, b.far.begin);
+  EXPECT_EQ(a.far.item, b.far.item);
+  EXPECT_EQ(a.multipole.begin, b.multipole.begin);
+  EXPECT_EQ(a.multipole.item, b.multipole.item);
+  EXPECT_EQ(a.local.begin, b.local.begin);
+  EXPECT_EQ(a.local.item, b.local.item);
+}
+
 // How often each (target place, source place) is met.
 class Coverage {
  public:
@@ -129,6 +140,19 @@ TEST(InteractionLists, GradedPointsFillEveryList) {
   EXPECT_GT(lists.local.item.size(), 100u);
 }
 
+// Every far pair has at least one pair of points, and none as many as all.
+TEST(InteractionLists, FarPairsWithFewerPointPairsThanAskedAreDirect) {
+  const Vec3Column p = sphere_points(600, 1);
+  const Tree tree(p, p, {1});
+  const InteractionLists lists(tree, {1, 1, 0});
+  const bool single =
+      std::ranges::any_of(lists.far.item, [&](const FarPair& far) { return tree.sources[far.source].size() == 1; });
+  EXPECT_TRUE(single);
+  expect_same_lists(lists, InteractionLists(tree, {1, 1, 1}));
+  EXPECT_LT(InteractionLists(tree, {1, 1, 2}).far.item.size(), lists.far.item.size());
+  EXPECT_TRUE(InteractionLists(tree, {1, 1, 600 * 600}).far.item.empty());
+}
+
 // Pairs of boxes (a, b) and (b, a) are treated alike when sources and targets are the same points.
 TEST(InteractionLists, AreSymmetricForEqualSets) {
   const Vec3Column p = graded_points(1500, 5);
@@ -141,17 +165,6 @@ TEST(InteractionLists, AreSymmetricForEqualSets) {
     for (const Index a : lists.multipole[b]) EXPECT_TRUE(std::ranges::binary_search(lists.local[a], b));
     for (const Index a : lists.local[b]) EXPECT_TRUE(std::ranges::binary_search(lists.multipole[a], b));
   }
-}
-
-void expect_same_lists(const InteractionLists& a, const InteractionLists& b) {
-  EXPECT_EQ(a.near.begin, b.near.begin);
-  EXPECT_EQ(a.near.item, b.near.item);
-  EXPECT_EQ(a.far.begin, b.far.begin);
-  EXPECT_EQ(a.far.item, b.far.item);
-  EXPECT_EQ(a.multipole.begin, b.multipole.begin);
-  EXPECT_EQ(a.multipole.item, b.multipole.item);
-  EXPECT_EQ(a.local.begin, b.local.begin);
-  EXPECT_EQ(a.local.item, b.local.item);
 }
 
 TEST(InteractionLists, DoNotDependOnTheNumberOfThreads) {

@@ -224,6 +224,19 @@ TEST(Tree, ExactTranslationsKeepTheBoxes) {
   }
 }
 
+TEST(Tree, StretchEnlargesTheRootAndKeepsThePointsInTheirBoxes) {
+  const Vec3Column p = sphere_points(2000, 1);
+  const Tree plain(p, p, {10});
+  for (const Real stretch : {1.25, 2.0}) {
+    const Tree tree(SortedPoints(p, p, stretch), {10});
+    EXPECT_DOUBLE_EQ(tree.size, stretch * plain.size);
+    for (Index b = 0; b < tree.box_count(); ++b)
+      for (Index i = tree.sources[b].begin; i < tree.sources[b].end; ++i)
+        expect_inside(tree, b, p[tree.source_order[i]]);
+  }
+  EXPECT_THROW(SortedPoints(p, p, 0.5), InternalError);
+}
+
 TEST(Tree, NegativeZeroIsZero) {
   Vec3Column p = random_points(300, 1, {1, 1, 0}), q = p;
   for (Real& z : q.z) z = -0.0;
