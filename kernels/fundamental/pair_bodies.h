@@ -17,14 +17,14 @@ namespace sherd::fmm {
 
 // Pairs closer than the square root of this count as coincident: 1/l^2 stays finite. (float: l = 8.7e-19.)
 template <class T>
-constexpr T least_square() {
+SHERD_HD constexpr T least_square() {
   return sizeof(T) == 4 ? T(0x1p-120) : T(0x1p-1000);
 }
 
 template <PairSum S, class Lanes>
 struct PairBody;
 
-// V: vector, or number; A . B of three, where A or B may be numbers.
+// a . b[at .. at + 2]
 template <class V, class P>
 SHERD_HD inline V dot3(const V* a, const P& b, int at) {
   return a[0] * b[at] + a[1] * b[at + 1] + a[2] * b[at + 2];

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/core/vec3.h"
+
 namespace sherd::fmm {
 
 // Strengths a source carries -> numbers a target receives. a, b, c, lambda, mu: PairConstants.
@@ -26,7 +28,7 @@ struct PairShape {
   std::size_t strengths, outputs;
   bool target_normals;
 };
-constexpr PairShape pair_shape(PairSum s) {
+SHERD_HD constexpr PairShape pair_shape(PairSum s) {
   constexpr PairShape shapes[kPairSums] = {{1, 1, false}, {1, 4, false}, {4, 1, false}, {4, 4, false}, {3, 3, false},
                                            {3, 9, false}, {3, 6, false}, {3, 3, true},  {9, 3, false}, {12, 9, false}};
   return shapes[static_cast<std::size_t>(s)];
