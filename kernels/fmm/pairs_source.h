@@ -42,18 +42,23 @@ inline V by_division(V a) {
   using T = decltype(a[0] + 0);
   V roots;
   for (std::size_t k = 0; k < sizeof(V) / sizeof(T); ++k) roots[k] = root(a[k]);
+  constexpr T least = least_square<T>();
   const V inverse = T(1) / roots;
-  return a > least_square<T>() ? inverse : V{};
+  return a > least ? inverse : V{};
 }
+
+// Constants, as calls of shared inline functions could be left in unoptimized builds.
+[[maybe_unused]] constexpr float kLeastSingle = least_square<float>();
+[[maybe_unused]] constexpr double kLeastDouble = least_square<double>();
 
 inline FloatVector inverse_root(FloatVector a) {
 #if SHERD_PAIRS_ROOT == SHERD_ROOT_AVX512
   // Estimate within 2^-14: 1e-8 after the step, so rounding decides.
-  const __mmask16 apart = _mm512_cmp_ps_mask(a, _mm512_set1_ps(least_square<float>()), _CMP_GT_OQ);
+  const __mmask16 apart = _mm512_cmp_ps_mask(a, _mm512_set1_ps(kLeastSingle), _CMP_GT_OQ);
   return newton<FloatVector>(a, _mm512_maskz_rsqrt14_ps(apart, a));
 #elif SHERD_PAIRS_ROOT == SHERD_ROOT_AVX2
   // Estimate within 1.5 2^-12: 2e-7 after the step.
-  const __m256 apart = _mm256_cmp_ps(a, _mm256_set1_ps(least_square<float>()), _CMP_GT_OQ);
+  const __m256 apart = _mm256_cmp_ps(a, _mm256_set1_ps(kLeastSingle), _CMP_GT_OQ);
   return newton<FloatVector>(a, _mm256_and_ps(apart, _mm256_rsqrt_ps(a)));
 #else
   return by_division(a);
@@ -62,7 +67,7 @@ inline FloatVector inverse_root(FloatVector a) {
 inline DoubleVector inverse_root(DoubleVector a) {
 #if SHERD_PAIRS_ROOT == SHERD_ROOT_AVX512
   // Estimate within 2^-14, so d <= 1.3e-4: 7e-17 after the step.
-  const __mmask8 apart = _mm512_cmp_pd_mask(a, _mm512_set1_pd(least_square<double>()), _CMP_GT_OQ);
+  const __mmask8 apart = _mm512_cmp_pd_mask(a, _mm512_set1_pd(kLeastDouble), _CMP_GT_OQ);
   return quartic<DoubleVector>(a, _mm512_maskz_rsqrt14_pd(apart, a));
 #else
   return by_division(a);
@@ -102,7 +107,8 @@ struct Tile {
   using T = typename L::Number;
   using V = typename L::Vector;
   using Body = PairBody<S, L>;
-  static constexpr std::size_t kWidth = sizeof(V) / sizeof(T), kStrengths = pair_shape(S).strengths,
+  static constexpr PairShape kShape = pair_shape(S);
+  static constexpr std::size_t kWidth = sizeof(V) / sizeof(T), kStrengths = kShape.strengths,
                                kRows = 3 + static_cast<std::size_t>(Body::kPacked);
   static_assert(kTile % kWidth == 0 && kPairPad % kWidth == 0);
 
@@ -143,11 +149,11 @@ struct Tile {
       }
     }
     for (std::size_t v = 0; v < kVectors; ++v) {
-      V normal[3]{}, result[pair_shape(S).outputs];
-      if constexpr (pair_shape(S).target_normals)
+      V normal[3]{}, result[kShape.outputs];
+      if constexpr (kShape.target_normals)
         for (std::size_t k = 0; k < 3; ++k) normal[k] = load<V>(targets.normal[k] + i + v * kWidth);
       Body::finish(constants, acc[v], normal, result);
-      for (std::size_t k = 0; k < pair_shape(S).outputs; ++k) add_to(out[k] + i + v * kWidth, result[k]);
+      for (std::size_t k = 0; k < kShape.outputs; ++k) add_to(out[k] + i + v * kWidth, result[k]);
     }
   }
 
