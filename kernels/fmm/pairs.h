@@ -18,8 +18,10 @@ using PairFunction = void (*)(const PairSources<T>& sources, const PairTargets<T
 enum class Instructions { kPortable, kAvx2, kAvx512 };
 Instructions best_instructions();  // of this processor (and this build)
 
-// T: float (relative error 1e-6 a pair) or double (1e-14). Instructions that this processor or build lacks give the
-// best it has.
+// T: float (relative error 1e-6 a pair) or double (1e-14), of the pair's terms as they stand in pair_sums.h. Pairs
+// closer than 8.7e-19 (float) or 3e-151 (double) count as coincident; squared distances must not overflow. Float wants
+// coordinates of the order of 1 about a centre nearby. Instructions that this processor or build lacks give the best it
+// has.
 template <class T>
 PairFunction<T> pair_function(PairSum sum, Instructions instructions = best_instructions());
 extern template PairFunction<float> pair_function(PairSum, Instructions);
