@@ -2,7 +2,7 @@
 // values follow from vertex values and fitted vertex gradients (design notes, thin-walls section 7, steps 1 to 5). The
 // unknowns stay the vertices; bending of thin walls, which linear triangles lock, is resolved. Rigid motions and, where
 // the surface is free of traction, affine fields are reproduced to rounding on any polyhedron, quadratic fields on flat
-// faces.
+// faces wider than one element.
 #pragma once
 #include <span>
 
