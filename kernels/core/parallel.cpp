@@ -43,14 +43,16 @@ void sort_by_digit(const std::vector<KeyedIndex>& from, std::vector<KeyedIndex>&
 
 }  // namespace
 
+// Made in place: a copy of the control would end the limit with the original.
 struct ThreadLimit::Impl {
+  explicit Impl(std::size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
   tbb::global_control control;
 };
 
 ThreadLimit::ThreadLimit(int threads) {
   const std::size_t count =
       threads > 0 ? static_cast<std::size_t>(threads) : static_cast<std::size_t>(tbb::info::default_concurrency());
-  impl_ = std::make_unique<Impl>(Impl{tbb::global_control(tbb::global_control::max_allowed_parallelism, count)});
+  impl_ = std::make_unique<Impl>(count);
 }
 ThreadLimit::~ThreadLimit() = default;
 

@@ -1,10 +1,16 @@
 // Laws of the core: eigensystems, matrices, deterministic parallel sums.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <thread>
+
 #include "kernels/core/column.h"
+#include "kernels/core/error.h"
 #include "kernels/core/parallel.h"
 #include "kernels/core/random.h"
 #include "kernels/core/symmetric.h"
+#include "kernels/core/task_graph.h"
 
 namespace sherd {
 namespace {
@@ -67,6 +73,47 @@ TEST(Parallel, SumHasTheSameBitsForAnyNumberOfThreads) {
   };
   const Real one = sum(1);
   for (const int threads : {2, 3, 4, 8}) EXPECT_EQ(sum(threads), one);
+}
+
+TEST(ThreadLimit, OneMeansTheCallersThreadAlone) {
+  const ThreadLimit one(1);
+  std::atomic<int> elsewhere = 0;
+  const auto here = std::this_thread::get_id();
+  parallel_for(200, 1, [&](std::size_t) {
+    if (std::this_thread::get_id() != here) ++elsewhere;
+    std::this_thread::sleep_for(std::chrono::microseconds(200));  // time enough for another thread to take part
+  });
+  EXPECT_EQ(elsewhere, 0);
+}
+
+TEST(TaskGraph, EveryTaskRunsOnceAfterItsPredecessors) {
+  // Two layers of a tree with a common root, twice from the same graph.
+  TaskGraph graph;
+  const TaskGraph::Task root = graph.add();
+  std::vector<TaskGraph::Task> leaves;
+  for (int i = 0; i < 300; ++i) {
+    const TaskGraph::Task middle = graph.add(), leaf = graph.add();
+    graph.precede(root, middle), graph.precede(middle, leaf), graph.precede(root, leaf);
+    leaves.push_back(leaf);
+  }
+  for (int run = 0; run < 2; ++run) {
+    std::atomic<int> clock = 0;
+    std::vector<int> at(graph.size(), -1);
+    graph.run([&](TaskGraph::Task t) {
+      EXPECT_EQ(at[t], -1);
+      at[t] = clock++;
+    });
+    EXPECT_EQ(at[root], 0);
+    for (const TaskGraph::Task leaf : leaves) EXPECT_LT(at[leaf - 1], at[leaf]);
+    EXPECT_EQ(clock, static_cast<int>(graph.size()));
+  }
+}
+
+TEST(TaskGraph, ACircleIsAnError) {
+  TaskGraph graph;
+  const TaskGraph::Task a = graph.add(), b = graph.add();
+  graph.precede(a, b), graph.precede(b, a);
+  EXPECT_THROW(graph.run([](TaskGraph::Task) {}), InternalError);
 }
 
 TEST(Parallel, EveryIndexIsVisitedOnce) {
