@@ -1,0 +1,451 @@
+#include "kernels/fmm/evaluator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/core/parallel.h"
+
+namespace sherd::fmm {
+namespace {
+
+using Eigen::Index;
+
+template <class T>
+using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+template <class T>
+using ConstMap = Eigen::Map<const Matrix<T>>;
+template <class T>
+using Map = Eigen::Map<Matrix<T>>;
+
+constexpr std::size_t kGrain = 4096;
+
+template <class T>
+PairConstants<T> cast(const PairConstants<double>& c) {
+  return {static_cast<T>(c.a), static_cast<T>(c.b), static_cast<T>(c.c), static_cast<T>(c.lambda),
+          static_cast<T>(c.mu)};
+}
+
+// The power of two just above the largest magnitude, 1 for zeros: scaling by it is exact.
+double binary_scale(double largest) {
+  return largest > 0 ? std::ldexp(1.0, std::ilogb(largest) + 1) : 1.0;
+}
+
+}  // namespace
+
+template <class Far, class Near>
+Evaluator<Far, Near>::Evaluator(const Problem& problem, const Tree& tree, const InteractionLists& lists,
+                                const Schedule& schedule, const Vec3Column& sources, const Vec3Column& targets,
+                                const Vec3Column* source_normals, const Vec3Column* target_normals)
+    : problem_(problem),
+      tree_(tree),
+      lists_(lists),
+      schedule_(schedule),
+      sources_(3, sources.size()),
+      source_normals_(source_normals ? 3 : 0, sources.size()),
+      targets_(3, schedule.padded_size),
+      target_normals_(target_normals ? 3 : 0, schedule.padded_size) {
+  for (const FarField& f : problem.fields) operators_.emplace_back(f);
+  parallel_for(tree.box_count(), 64, [&](std::size_t box) {
+    const auto b = static_cast<Tree::Index>(box);
+    if (!tree.leaf(b)) return;
+    const Vec3 centre = tree.centre(b);
+    for (Tree::Index i = tree.sources[b].begin; i < tree.sources[b].end; ++i) {
+      const Vec3 x = (sources[tree.source_order[i]] - centre) / tree.size;
+      for (int k = 0; k < 3; ++k) {
+        sources_.column(static_cast<std::size_t>(k))[i] = static_cast<Near>(x[k]);
+        if (source_normals)
+          source_normals_.column(static_cast<std::size_t>(k))[i] =
+              static_cast<Near>((*source_normals)[tree.source_order[i]][k]);
+      }
+    }
+    const Tree::Range t = tree.targets[b];
+    for (std::size_t i = 0; i < (t.size() + kPairPad - 1) / kPairPad * kPairPad; ++i) {
+      const std::size_t at = schedule.padded[b] + i;
+      const std::uint32_t given = tree.target_order[std::min<std::size_t>(t.begin + i, t.end - 1)];
+      const Vec3 x = (targets[given] - centre) / tree.size;
+      for (int k = 0; k < 3; ++k) {
+        targets_.column(static_cast<std::size_t>(k))[at] = static_cast<Near>(x[k]);
+        if (target_normals)
+          target_normals_.column(static_cast<std::size_t>(k))[at] = static_cast<Near>((*target_normals)[given][k]);
+      }
+    }
+  });
+}
+
+template <class Far, class Near>
+typename Evaluator<Far, Near>::State Evaluator<Far, Near>::start(std::span<const double> strengths,
+                                                                 std::span<double> out, double factor) const {
+  const PairShape shape = pair_shape(problem_.sum);
+  const std::size_t own = first_normal(problem_.sum), n = sources_.size();
+  State s;
+  s.out = out;
+  std::vector<double> partial((n + kGrain - 1) / kGrain, 0);
+  const auto root_factor = [&](std::size_t k) { return is_dipole(problem_.sum, k) ? 1 / tree_.size : 1.0; };
+  parallel_for_chunks(n, kGrain, [&](std::size_t begin, std::size_t end) {
+    double largest = 0;
+    for (std::size_t k = 0; k < own; ++k)
+      for (std::size_t i = begin; i < end; ++i)
+        largest = std::max(largest, std::abs(strengths[k * n + i] * root_factor(k)));
+    partial[begin / kGrain] = largest;
+  });
+  const double unit = binary_scale(partial.empty() ? 0 : *std::max_element(partial.begin(), partial.end()));
+  s.scale = factor * unit;
+  s.strengths = Columns<Near>(own, n);
+  parallel_for_chunks(n, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = 0; k < own; ++k) {
+      const double f = root_factor(k) / unit;
+      for (std::size_t i = begin; i < end; ++i)
+        s.strengths.column(k)[i] = static_cast<Near>(strengths[k * n + tree_.source_order[i]] * f);
+    }
+  });
+  s.near = Columns<Near>(shape.outputs, schedule_.padded_size);
+  s.far = Columns<Far>(shape.outputs, schedule_.padded_size);
+  for (const Operators<Far>& o : operators_) {
+    s.multipole.emplace_back(tree_.box_count() * o.columns * o.rank, Far(0));
+    s.local.emplace_back(tree_.box_count() * o.columns * o.rank, Far(0));
+  }
+  return s;
+}
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::run(const Schedule::Task& task, State& state) const {
+  const Chunk& chunk = schedule_.chunks()[task.chunk];
+  switch (task.kind) {
+    case TaskKind::kDirect:
+      direct(chunk, state);
+      break;
+    case TaskKind::kUp:
+      for (std::size_t f = 0; f < operators_.size(); ++f)
+        leaf_multipoles(f, chunk, state), merge_multipoles(f, chunk, state);
+      break;
+    case TaskKind::kAcross:
+      for (std::size_t f = 0; f < operators_.size(); ++f) across(f, task.chunk, state), leaf_locals(f, chunk, state);
+      break;
+    case TaskKind::kDown:
+      for (std::size_t f = 0; f < operators_.size(); ++f) {
+        split_locals(f, chunk, state);
+        evaluate_locals(f, chunk, state);
+        evaluate_multipoles(f, chunk, state);
+      }
+      finish(chunk, state);
+      break;
+  }
+}
+
+template <class Far, class Near>
+Vec3 Evaluator<Far, Near>::between(Tree::Index to, Tree::Index from) const {
+  return (tree_.centre(to) - tree_.centre(from)) / tree_.size;
+}
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::direct(const Chunk& chunk, State& state) const {
+  const PairFunction<Near> sum = pair_function<Near>(problem_.sum);
+  const PairConstants<Near> constants = cast<Near>(problem_.constants);
+  const PairShape shape = pair_shape(problem_.sum);
+  const std::size_t normal = first_normal(problem_.sum);
+  for (Tree::Index b = chunk.begin; b < chunk.end; ++b) {
+    if (!tree_.leaf(b) || tree_.targets[b].size() == 0) continue;
+    const std::size_t at = schedule_.padded[b];
+    PairTargets<Near> targets{};
+    targets.count = (tree_.targets[b].size() + kPairPad - 1) / kPairPad * kPairPad;
+    Near* out[kMaxOutputs];
+    for (std::size_t k = 0; k < 3; ++k) {
+      targets.x[k] = targets_.column(k) + at;
+      targets.normal[k] = shape.target_normals ? target_normals_.column(k) + at : nullptr;
+    }
+    for (std::size_t k = 0; k < shape.outputs; ++k) out[k] = state.near.column(k) + at;
+    for (const Tree::Index a : lists_.near[b]) {
+      const Vec3 d = between(b, a);
+      const Near shift[3] = {static_cast<Near>(d.x), static_cast<Near>(d.y), static_cast<Near>(d.z)};
+      const Tree::Range r = tree_.sources[a];
+      PairSources<Near> sources{};
+      sources.count = r.size();
+      for (std::size_t k = 0; k < 3; ++k) sources.x[k] = sources_.column(k) + r.begin;
+      for (std::size_t k = 0, own = 0; k < shape.strengths; ++k)
+        sources.strength[k] = k >= normal && k < normal + 3 ? source_normals_.column(k - normal) + r.begin
+                                                            : state.strengths.column(own++) + r.begin;
+      sum(sources, targets, shift, constants, out);
+    }
+  }
+}
+
+template <class Far, class Near>
+struct Evaluator<Far, Near>::BoxSources {
+  std::vector<Far> data;
+  PairSources<Far> sources{};
+};
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::gather_sources(std::size_t field, Tree::Index leaf, Tree::Index box, const State& state,
+                                          BoxSources& out) const {
+  const FarField& f = problem_.fields[field];
+  const std::size_t n = tree_.sources[leaf].size(), first = tree_.sources[leaf].begin;
+  const std::size_t strengths = pair_shape(f.up).strengths, normal = first_normal(problem_.sum);
+  const Near unit = std::ldexp(Near(1), tree_.level[box]);
+  const Vec3 d = between(leaf, box);
+  out.data.assign((3 + strengths) * n, Far(0));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Near shift = static_cast<Near>(d[static_cast<int>(k)]);
+    Far* x = out.data.data() + k * n;
+    for (std::size_t i = 0; i < n; ++i) x[i] = static_cast<Far>((sources_.column(k)[first + i] + shift) * unit);
+    out.sources.x[k] = x;
+  }
+  for (const FarField::Term& t : f.terms) {
+    const bool is_normal = t.from >= normal && t.from < normal + 3;
+    const Near* from =
+        is_normal ? source_normals_.column(t.from - normal) + first : state.strengths.column(t.from) + first;
+    const Near factor = static_cast<Near>(t.factor) * (t.dipole ? unit : Near(1));
+    Far* to = out.data.data() + (3 + t.to) * n;
+    for (std::size_t i = 0; i < n; ++i) to[i] += static_cast<Far>(from[i] * factor);
+  }
+  for (std::size_t k = 0; k < strengths; ++k) out.sources.strength[k] = out.data.data() + (3 + k) * n;
+  out.sources.count = n;
+}
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::leaf_multipoles(std::size_t field, const Chunk& chunk, State& state) const {
+  const FarField& f = problem_.fields[field];
+  const Operators<Far>& o = operators_[field];
+  const PairFunction<Far> sum = pair_function<Far>(f.up);
+  const PairConstants<Far> constants = cast<Far>(f.up_constants);
+  const std::size_t stride = o.outer.size(), components = o.dim * o.columns;
+  std::vector<Tree::Index> leaves;
+  for (Tree::Index b = chunk.begin; b < chunk.end; ++b)
+    if (tree_.leaf(b) && tree_.sources[b].size() > 0) leaves.push_back(b);
+  constexpr std::size_t kBatch = 32;
+  std::vector<Far> potential;
+  BoxSources sources;
+  Matrix<Far> multipole;
+  for (std::size_t first = 0; first < leaves.size(); first += kBatch) {
+    const std::size_t n = std::min(kBatch, leaves.size() - first);
+    potential.assign(n * components * stride, Far(0));
+    for (std::size_t l = 0; l < n; ++l) {
+      gather_sources(field, leaves[first + l], leaves[first + l], state, sources);
+      const PairTargets<Far> check{stride, {o.outer.column(0), o.outer.column(1), o.outer.column(2)}, {}};
+      Far* out[kMaxOutputs];
+      for (std::size_t k = 0; k < components; ++k) out[k] = potential.data() + (l * components + k) * stride;
+      constexpr Far kNone[3] = {0, 0, 0};
+      sum(sources.sources, check, kNone, constants, out);
+    }
+    const auto columns = static_cast<Index>(n * o.columns);
+    multipole.noalias() = o.up * ConstMap<Far>(potential.data(), static_cast<Index>(o.dim * stride), columns);
+    for (std::size_t l = 0; l < n; ++l)
+      std::copy_n(multipole.data() + l * o.columns * o.rank, o.columns * o.rank,
+                  state.multipole[field].data() + leaves[first + l] * o.columns * o.rank);
+  }
+}
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::merge_multipoles(std::size_t field, const Chunk& chunk, State& state) const {
+  const Operators<Far>& o = operators_[field];
+  const std::size_t width = o.columns * o.rank;
+  std::vector<Far>& m = state.multipole[field];
+  std::vector<Tree::Index> parents;
+  Matrix<Far> children, moved;
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    parents.clear();
+    children.resize(static_cast<Index>(o.rank), static_cast<Index>((chunk.end - chunk.begin) * o.columns));
+    for (Tree::Index b = chunk.begin; b < chunk.end; ++b)
+      for (Tree::Index c = tree_.children[b].begin; c < tree_.children[b].end; ++c) {
+        const auto& a = tree_.anchor[c];
+        if (((a[0] & 1) | (a[1] & 1) << 1 | (a[2] & 1) << 2) != octant || tree_.sources[c].size() == 0) continue;
+        std::copy_n(m.data() + c * width, width, children.data() + parents.size() * width);
+        parents.push_back(b);
+      }
+    if (parents.empty()) continue;
+    moved.noalias() = o.merge[octant] * children.leftCols(static_cast<Index>(parents.size() * o.columns));
+    for (std::size_t i = 0; i < parents.size(); ++i)
+      for (std::size_t k = 0; k < width; ++k) m[parents[i] * width + k] += moved.data()[i * width + k];
+  }
+}
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::across(std::size_t field, std::size_t chunk, State& state) const {
+  const Operators<Far>& o = operators_[field];
+  const std::span<const FarExchange> exchanges = schedule_.exchanges(chunk);
+  const std::size_t width = o.columns * o.rank, batch = std::max<std::size_t>(1, 192 / o.columns);
+  std::vector<Far> in(batch * width), out(batch * width);
+  const Far* multipole = state.multipole[field].data();
+  Far* local = state.local[field].data();
+  for (std::size_t first = 0; first < exchanges.size();) {
+    std::size_t last = first + 1;
+    while (last < exchanges.size() && last - first < batch && exchanges[last].matrix == exchanges[first].matrix) ++last;
+    for (std::size_t i = first; i < last; ++i) {
+      const Far *from = multipole + exchanges[i].source * width, *sign = o.flip[exchanges[i].flips].data();
+      Far* to = in.data() + (i - first) * width;
+      for (std::size_t c = 0; c < o.columns; ++c)
+        for (std::size_t k = 0; k < o.rank; ++k) to[c * o.rank + k] = from[c * o.rank + k] * sign[k];
+    }
+    const auto columns = static_cast<Index>((last - first) * o.columns), rank = static_cast<Index>(o.rank);
+    Map<Far>(out.data(), rank, columns).noalias() =
+        o.across[exchanges[first].matrix] * ConstMap<Far>(in.data(), rank, columns);
+    for (std::size_t i = first; i < last; ++i) {
+      const Far *from = out.data() + (i - first) * width, *sign = o.flip[exchanges[i].flips].data();
+      Far* to = local + exchanges[i].target * width;
+      for (std::size_t c = 0; c < o.columns; ++c)
+        for (std::size_t k = 0; k < o.rank; ++k) to[c * o.rank + k] += from[c * o.rank + k] * sign[k];
+    }
+    first = last;
+  }
+}
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::leaf_locals(std::size_t field, const Chunk& chunk, State& state) const {
+  const FarField& f = problem_.fields[field];
+  const Operators<Far>& o = operators_[field];
+  const PairFunction<Far> sum = pair_function<Far>(f.up);
+  const PairConstants<Far> constants = cast<Far>(f.up_constants);
+  const std::size_t stride = o.inner.size(), components = o.dim * o.columns;
+  std::vector<Far> potential;
+  BoxSources sources;
+  for (Tree::Index b = chunk.begin; b < chunk.end; ++b) {
+    if (lists_.local[b].empty()) continue;
+    potential.assign(components * stride, Far(0));
+    for (const Tree::Index a : lists_.local[b]) {
+      gather_sources(field, a, b, state, sources);
+      const PairTargets<Far> check{stride, {o.inner.column(0), o.inner.column(1), o.inner.column(2)}, {}};
+      Far* out[kMaxOutputs];
+      for (std::size_t k = 0; k < components; ++k) out[k] = potential.data() + k * stride;
+      constexpr Far kNone[3] = {0, 0, 0};
+      sum(sources.sources, check, kNone, constants, out);
+    }
+    const auto columns = static_cast<Index>(o.columns);
+    Map<Far>(state.local[field].data() + b * o.columns * o.rank, static_cast<Index>(o.rank), columns).noalias() +=
+        o.gather * ConstMap<Far>(potential.data(), static_cast<Index>(o.dim * stride), columns);
+  }
+}
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::split_locals(std::size_t field, const Chunk& chunk, State& state) const {
+  if (chunk.begin == 0) return;  // the root
+  const Operators<Far>& o = operators_[field];
+  const std::size_t width = o.columns * o.rank;
+  std::vector<Far>& local = state.local[field];
+  std::vector<Tree::Index> boxes;
+  Matrix<Far> parents, moved;
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    boxes.clear();
+    parents.resize(static_cast<Index>(o.rank), static_cast<Index>((chunk.end - chunk.begin) * o.columns));
+    for (Tree::Index b = chunk.begin; b < chunk.end; ++b) {
+      const auto& a = tree_.anchor[b];
+      if (((a[0] & 1) | (a[1] & 1) << 1 | (a[2] & 1) << 2) != octant || tree_.targets[b].size() == 0) continue;
+      std::copy_n(local.data() + tree_.parent[b] * width, width, parents.data() + boxes.size() * width);
+      boxes.push_back(b);
+    }
+    if (boxes.empty()) continue;
+    moved.noalias() = o.split[octant] * parents.leftCols(static_cast<Index>(boxes.size() * o.columns));
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      for (std::size_t k = 0; k < width; ++k) local[boxes[i] * width + k] += moved.data()[i * width + k];
+  }
+}
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::add_surface(std::size_t field, Tree::Index leaf, Tree::Index box,
+                                       const Columns<Far>& surface, std::size_t count, const Far* density, State& state,
+                                       std::vector<Far>& work) const {
+  const FarField& f = problem_.fields[field];
+  const std::size_t n = (tree_.targets[leaf].size() + kPairPad - 1) / kPairPad * kPairPad, at = schedule_.padded[leaf];
+  const PairShape shape = pair_shape(f.down);
+  const Near unit = std::ldexp(Near(1), tree_.level[box]);
+  const Vec3 d = between(leaf, box);
+  work.assign((6 + shape.outputs) * n, Far(0));
+  PairTargets<Far> targets{};
+  targets.count = n;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Near shift = static_cast<Near>(d[static_cast<int>(k)]);
+    Far* x = work.data() + k * n;
+    for (std::size_t i = 0; i < n; ++i) x[i] = static_cast<Far>((targets_.column(k)[at + i] + shift) * unit);
+    targets.x[k] = x;
+    if (!shape.target_normals) continue;
+    Far* normal = work.data() + (3 + k) * n;
+    for (std::size_t i = 0; i < n; ++i) normal[i] = static_cast<Far>(target_normals_.column(k)[at + i]);
+    targets.normal[k] = normal;
+  }
+  PairSources<Far> sources{};
+  sources.count = count;
+  for (std::size_t k = 0; k < 3; ++k) sources.x[k] = surface.column(k);
+  for (std::size_t k = 0; k < shape.strengths; ++k) sources.strength[k] = density + k * surface.size();
+  Far* out[kMaxOutputs];
+  for (std::size_t k = 0; k < shape.outputs; ++k) out[k] = work.data() + (6 + k) * n;
+  constexpr Far kNone[3] = {0, 0, 0};
+  pair_function<Far>(f.down)(sources, targets, kNone, cast<Far>(f.down_constants), out);
+  for (std::size_t k = 0; k < shape.outputs; ++k) {
+    const Far scale = std::ldexp(Far(1), tree_.level[box] * output_power(problem_.sum, k));
+    Far* far = state.far.column(k) + at;
+    for (std::size_t i = 0; i < n; ++i) far[i] += out[k][i] * scale;
+  }
+}
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::evaluate_locals(std::size_t field, const Chunk& chunk, State& state) const {
+  const Operators<Far>& o = operators_[field];
+  const std::size_t width = o.columns * o.rank, stride = o.outer.size();
+  std::vector<Tree::Index> leaves;
+  for (Tree::Index b = chunk.begin; b < chunk.end; ++b)
+    if (tree_.leaf(b) && tree_.targets[b].size() > 0) leaves.push_back(b);
+  constexpr std::size_t kBatch = 32;
+  Matrix<Far> local, density;
+  std::vector<Far> work;
+  for (std::size_t first = 0; first < leaves.size(); first += kBatch) {
+    const std::size_t n = std::min(kBatch, leaves.size() - first);
+    local.resize(static_cast<Index>(o.rank), static_cast<Index>(n * o.columns));
+    for (std::size_t l = 0; l < n; ++l)
+      std::copy_n(state.local[field].data() + leaves[first + l] * width, width, local.data() + l * width);
+    density.noalias() = o.down * local;
+    for (std::size_t l = 0; l < n; ++l)
+      add_surface(field, leaves[first + l], leaves[first + l], o.outer, o.outer_size,
+                  density.data() + l * o.columns * o.dim * stride, state, work);
+  }
+}
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::evaluate_multipoles(std::size_t field, const Chunk& chunk, State& state) const {
+  const Operators<Far>& o = operators_[field];
+  const std::size_t width = o.columns * o.rank;
+  Matrix<Far> density;
+  std::vector<Far> work;
+  for (Tree::Index b = chunk.begin; b < chunk.end; ++b)
+    for (const Tree::Index a : lists_.multipole[b]) {
+      density.noalias() = o.spread * ConstMap<Far>(state.multipole[field].data() + a * width,
+                                                   static_cast<Index>(o.rank), static_cast<Index>(o.columns));
+      add_surface(field, b, a, o.inner, o.inner_size, density.data(), state, work);
+    }
+}
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::finish(const Chunk& chunk, State& state) const {
+  const std::size_t outputs = pair_shape(problem_.sum).outputs, n = tree_.target_order.size();
+  for (std::size_t k = 0; k < outputs; ++k) {
+    const double scale = state.scale / std::pow(tree_.size, output_power(problem_.sum, k));
+    for (Tree::Index b = chunk.begin; b < chunk.end; ++b) {
+      if (!tree_.leaf(b)) continue;
+      const Near* near = state.near.column(k) + schedule_.padded[b];
+      const Far* far = state.far.column(k) + schedule_.padded[b];
+      for (Tree::Index i = 0; i < tree_.targets[b].size(); ++i)
+        state.out[k * n + tree_.target_order[tree_.targets[b].begin + i]] =
+            (static_cast<double>(near[i]) + static_cast<double>(far[i])) * scale;
+    }
+  }
+}
+
+template <class Far, class Near>
+std::size_t Evaluator<Far, Near>::bytes() const {
+  std::size_t sum = sources_.bytes() + source_normals_.bytes() + targets_.bytes() + target_normals_.bytes();
+  for (const Operators<Far>& o : operators_) sum += o.bytes();
+  return sum;
+}
+
+template <class Far, class Near>
+std::size_t Evaluator<Far, Near>::state_bytes() const {
+  const PairShape shape = pair_shape(problem_.sum);
+  std::size_t sum = shape.strengths * sources_.size() * sizeof(Near) +
+                    shape.outputs * schedule_.padded_size * (sizeof(Near) + sizeof(Far));
+  for (const Operators<Far>& o : operators_) sum += 2 * tree_.box_count() * o.columns * o.rank * sizeof(Far);
+  return sum;
+}
+
+template class Evaluator<float, float>;
+template class Evaluator<float, double>;
+template class Evaluator<double, double>;
+
+}  // namespace sherd::fmm
