@@ -3,12 +3,18 @@
 #include <algorithm>
 
 #include "engine/elastostatic/lane_kernels.h"
+#include "engine/elastostatic/panel_search.h"
 #include "kernels/core/parallel.h"
+#include "kernels/fmm/plan.h"
 #include "kernels/fundamental/kelvin.h"
 #include "kernels/quadrature/gauss.h"
 
 namespace sherd {
 namespace {
+
+// Pairs of targets and far sources from which on the fast multipole method is sooner done than a second of direct sums.
+constexpr double kFastPairs = 2e9;
+constexpr Real kFastTolerance = 1e-6;
 
 using Density = std::array<Vec3, kQuadraticMonomials>;
 
@@ -78,25 +84,42 @@ struct Layer {
     for (std::size_t k = 0; k < q.size(); ++k) u += q[k] * ((3 - 4 * m.nu) * v.inverse[k]) + v.dyad[k] * q[k];
     return u * m.kelvin();
   }
-  // The three-point sum over all panels for eight targets at once, corrected where a panel is nearer than that allows.
-  void displacement(const std::array<Vec3, kLanes>& x, std::size_t count, const Elastic& m, Vec3* out) const {
+  // The three-point sum over all panels for eight targets at once.
+  void far_sum(const std::array<Vec3, kLanes>& x, std::size_t count, const Elastic& m, Vec3* out) const {
     double target[3 * kLanes], sum[3 * kLanes] = {};
     for (std::size_t k = 0; k < kLanes; ++k)
       for (int i = 0; i < 3; ++i) target[static_cast<std::size_t>(i) * kLanes + k] = x[k < count ? k : 0][i];
     const Vec3Column &p = far.position, &f = far.force;
     lane_kernels().kelvin_sum({p.x.data(), p.y.data(), p.z.data(), f.x.data(), f.y.data(), f.z.data(), p.size()},
                               3 - 4 * m.nu, least2, target, sum);
-    for (std::size_t k = 0; k < count; ++k) {
-      Vec3 u = Vec3{sum[k], sum[kLanes + k], sum[2 * kLanes + k]} * m.kelvin();
-      for (std::size_t i = 0; i < near2.size(); ++i) {
-        const Real d2 = distance2(x[k], centroid[i]);
-        if (d2 > middle2[i]) continue;
-        for (std::size_t q = 3 * i; q < 3 * i + 3; ++q)
-          if (distance2(x[k], p[q]) > least2) u -= kelvin::displacement(x[k] - p[q], f[q], m);
-        u += d2 > near2[i] ? middle.displacement(7 * i, 7 * i + 7, x[k], m) : closed_form(i, x[k], m);
-      }
-      out[k] = u;
+    for (std::size_t k = 0; k < count; ++k) out[k] = Vec3{sum[k], sum[kLanes + k], sum[2 * kLanes + k]} * m.kelvin();
+  }
+  // The same by the fast multipole method, for all targets.
+  Vec3Column far_sums(const Vec3Column& x, const Elastic& m) const {
+    fmm::PlanOptions o;
+    o.tolerance = kFastTolerance, o.arithmetic = fmm::Arithmetic::kMixed;
+    const fmm::Plan plan(fmm::PairSum::kKelvinValue, {(3 - 4 * m.nu) * m.kelvin(), m.kelvin(), 0, 0, 0},
+                         {far.position, x, nullptr, nullptr}, o);
+    std::vector<double> strengths = far.force.x, value(3 * x.size());
+    strengths.insert(strengths.end(), far.force.y.begin(), far.force.y.end());
+    strengths.insert(strengths.end(), far.force.z.begin(), far.force.z.end());
+    plan.apply(strengths, value);
+    Vec3Column out(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) out.set(i, {value[i], value[x.size() + i], value[2 * x.size() + i]});
+    return out;
+  }
+  // What panels nearer than three points allow add to that.
+  Vec3 correction(std::span<const std::uint32_t> panels, const Vec3& x, const Elastic& m) const {
+    const Vec3Column &p = far.position, &f = far.force;
+    Vec3 u;
+    for (const std::uint32_t i : panels) {
+      const Real d2 = distance2(x, centroid[i]);
+      if (d2 > middle2[i]) continue;
+      for (std::size_t q = 3 * i; q < 3 * i + 3; ++q)
+        if (distance2(x, p[q]) > least2) u -= kelvin::displacement(x - p[q], f[q], m);
+      u += d2 > near2[i] ? middle.displacement(7 * i, 7 * i + 7, x, m) : closed_form(i, x, m);
     }
+    return u;
   }
 };
 
@@ -127,13 +150,20 @@ Vec3Column load_potential(const Boundary& b, const Load& load, const ParticularS
   if (!particular.zero() || !load.face_traction.empty() || !load.quadratic_traction.empty())
     for (std::size_t t = 0; t < b.panels.size(); ++t)
       layer.add(b.panels[t], traction_polynomial(b, load, particular, t), false, options);
-  Vec3Column potential(points.size());
+  const bool fast = static_cast<double>(layer.far.position.size()) * static_cast<double>(points.size()) > kFastPairs;
+  Vec3Column potential = fast ? layer.far_sums(points, m) : Vec3Column(points.size());
+  const PanelSearch search(layer.centroid, layer.middle2);
   parallel_for((points.size() + kLanes - 1) / kLanes, 4, [&](std::size_t group) {
     std::array<Vec3, kLanes> x, u;
     const std::size_t first = group * kLanes, count = std::min(kLanes, points.size() - first);
-    for (std::size_t k = 0; k < count; ++k) x[k] = points[first + k];
-    layer.displacement(x, count, m, u.data());
-    for (std::size_t k = 0; k < count; ++k) potential.set(first + k, u[k]);
+    for (std::size_t k = 0; k < count; ++k) x[k] = points[first + k], u[k] = potential[first + k];
+    if (!fast) layer.far_sum(x, count, m, u.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      Box at;
+      at.grow(x[k]);
+      search.visit(at, [&](std::size_t block) { u[k] += layer.correction(search.block(block), x[k], m); });
+      potential.set(first + k, u[k]);
+    }
   });
   return potential;
 }

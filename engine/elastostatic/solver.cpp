@@ -25,6 +25,10 @@ std::vector<VertexTest> vertex_tests(const SurfaceMesh& mesh, const ElasticOptio
   return out;
 }
 
+// Without a coarse space, the fast operator's bodies converge in this many iterations or are thin.
+constexpr int kPlainIterations = 50;
+constexpr std::size_t kFastCoarseDimension = 200;
+
 // Walls so thin that the coarse space would need hundreds of iterations: over half a percent of the surface.
 bool has_slender_walls(const SurfaceMesh& mesh) {
   const std::vector<Real> thickness = wall_thickness(mesh).face, edge = local_edge_length(mesh);
@@ -47,56 +51,104 @@ ElasticBody::ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const
       testing_(boundary_, reconstruction_, vertex_tests(boundary_.mesh, options)),
       modes_(boundary_.mesh.vertices, boundary_.vertex_area),
       cavities_(boundary_, reconstruction_, modes_) {
-  reason_ = too_large(mesh.triangle_count(), 3 * mesh.vertex_count(), options.double_storage, options.max_bytes);
+  slender_ = has_slender_walls(boundary_.mesh);
+  const std::size_t n = 3 * mesh.vertex_count();
+  const bool dense = options.kind == OperatorKind::kDense ||
+                     (options.kind == OperatorKind::kAuto &&
+                      n <= (slender_ ? options.dense_slender_unknowns : options.dense_unknowns));
+  reason_ = dense ? too_large(mesh.triangle_count(), n, options.double_storage, options.max_bytes)
+                  : FastOperator::too_large(boundary_, testing_, options.max_bytes);
   if (!reason_.empty()) return;
-  if (options.double_storage)
-    build<double>();
+  if (!dense)
+    build_fast();
+  else if (options.double_storage)
+    build_dense<double>();
   else
-    build<float>();
+    build_dense<float>();
+  precondition();
 }
 
 template <class Scalar>
-void ElasticBody::build() {
+void ElasticBody::build_dense() {
   auto dense = std::make_unique<DenseOperator<Scalar>>(boundary_.mesh.vertex_count());
   assemble_direct(boundary_, reconstruction_, material_.nu, testing_, *dense);
-  inverse_blocks_ = inverse_diagonal_blocks(*dense);
   make_factors_ = [this, &a = *dense] { return std::make_unique<FactoredInverse>(a, modes_, cavities_); };
+  operator_bytes_ = dense->size() * dense->size() * sizeof(Scalar);
   operator_ = std::move(dense);
+}
+
+void ElasticBody::build_fast() {
+  auto fast = std::make_unique<FastOperator>(boundary_, reconstruction_, material_.nu, testing_, options_.fast);
+  operator_bytes_ = fast->bytes();
+  operator_ = std::move(fast);
+}
+
+// A coarse space costs products with the operator: the fast one first tries without, unless walls are slender.
+void ElasticBody::precondition() {
+  inverse_blocks_ = inverse_diagonal_blocks(*operator_);
   completed_ = std::make_unique<CompletedOperator>(*operator_, modes_, &cavities_);
   const std::size_t n = operator_->size();
-  const bool factors = options_.preconditioning == Preconditioning::kFactored ||
-                       (options_.preconditioning == Preconditioning::kAuto &&
-                        (n <= 1500 || (n <= 12000 && has_slender_walls(boundary_.mesh))));
-  if (!factors || !factor())
-    deflation_ = std::make_unique<Deflation>(*completed_, boundary_, inverse_blocks_, options_.deflation);
+  const bool factors =
+      make_factors_ &&
+      (options_.preconditioning == Preconditioning::kFactored ||
+       (options_.preconditioning == Preconditioning::kAuto && (n <= 1500 || (n <= 12000 && slender_))));
+  if (factors && factor()) return;
+  if (make_factors_ || slender_ || options_.preconditioning == Preconditioning::kDeflation) deflate();
+}
+
+void ElasticBody::deflate() const {
+  DeflationOptions o = options_.deflation;
+  if (!make_factors_) o.max_dimension = std::min<std::size_t>(o.max_dimension, kFastCoarseDimension);
+  deflation_ = std::make_unique<Deflation>(*completed_, boundary_, inverse_blocks_, o);
 }
 
 bool ElasticBody::factor() const {
   const std::lock_guard lock(factoring_);
-  if (!factored_ && FactoredInverse::bytes(operator_->size()) <= options_.max_bytes) factored_ = make_factors_();
+  if (make_factors_ && !factored_ && FactoredInverse::bytes(operator_->size()) <= options_.max_bytes)
+    factored_ = make_factors_();
   return factored_ && factored_->ok();
 }
 
 KrylovResult ElasticBody::iterate(std::span<const Real> b, std::span<Real> x, bool& factored) const {
-  KrylovResult first;
-  factored = !deflation_;
-  if (deflation_) {
-    const auto coarse = [&](std::span<const Real> r, std::span<Real> z) { deflation_->apply(r, z); };
-    first = gmres(*completed_, coarse, b, x, options_.krylov);
-    if (first.status == KrylovStatus::kConverged || options_.preconditioning == Preconditioning::kDeflation ||
-        !factor())
-      return first;
-    factored = true;
+  factored = false;
+  KrylovResult total;
+  const auto attempt = [&](const Preconditioner& m, const KrylovOptions& options) {
     for (const Real v : x)
       if (!std::isfinite(v)) {
         std::fill(x.begin(), x.end(), 0);
         break;
       }
+    const int iterations = total.iterations, products = total.products;
+    total = gmres(*completed_, m, b, x, options);
+    total.iterations += iterations, total.products += products;
+    return total.status == KrylovStatus::kConverged;
+  };
+  const auto ready = [&](const auto& preconditioner) {
+    const std::lock_guard lock(factoring_);
+    return preconditioner != nullptr;
+  };
+  if (!ready(factored_) && !ready(deflation_)) {
+    KrylovOptions few = options_.krylov;
+    few.max_iterations = std::min(few.max_iterations, kPlainIterations);
+    if (attempt([&](auto r, auto z) { apply_blocks(r, z); }, few) ||
+        few.max_iterations == options_.krylov.max_iterations)
+      return total;
+    const std::lock_guard lock(factoring_);
+    if (!deflation_) deflate();
   }
-  const auto exact = [&](std::span<const Real> r, std::span<Real> z) { factored_->apply(r, z); };
-  KrylovResult result = gmres(*completed_, exact, b, x, options_.krylov);
-  result.iterations += first.iterations, result.products += first.products;
-  return result;
+  if (ready(deflation_) && (attempt([&](auto r, auto z) { deflation_->apply(r, z); }, options_.krylov) ||
+                            options_.preconditioning == Preconditioning::kDeflation || !factor()))
+    return total;
+  factored = true;
+  attempt([&](auto r, auto z) { factored_->apply(r, z); }, options_.krylov);
+  return total;
+}
+
+void ElasticBody::apply_blocks(std::span<const Real> r, std::span<Real> z) const {
+  for (std::size_t p = 0; p < inverse_blocks_.size(); ++p) {
+    const Vec3 v = inverse_blocks_[p] * Vec3{r[3 * p], r[3 * p + 1], r[3 * p + 2]};
+    z[3 * p] = v.x, z[3 * p + 1] = v.y, z[3 * p + 2] = v.z;
+  }
 }
 
 // Mean stress = integral of x t^T over the boundary / volume, for tractions in balance (divergence theorem).
@@ -138,8 +190,8 @@ std::size_t ElasticBody::bytes() const {
   if (!ready()) return 0;
   const std::size_t n = operator_->size();
   const std::lock_guard lock(factoring_);
-  return n * n * (options_.double_storage ? sizeof(double) : sizeof(float)) +
-         (factored_ ? FactoredInverse::bytes(n) : 0);
+  return operator_bytes_ + (factored_ ? FactoredInverse::bytes(n) : 0) +
+         (deflation_ ? n * deflation_->dimension() * sizeof(Real) : 0);
 }
 
 ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& particular) const {

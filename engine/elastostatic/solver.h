@@ -7,6 +7,7 @@
 
 #include "engine/elastostatic/deflation.h"
 #include "engine/elastostatic/factored.h"
+#include "engine/elastostatic/fast_operator.h"
 #include "engine/elastostatic/krylov.h"
 #include "engine/elastostatic/rigid_modes.h"
 #include "engine/elastostatic/single_layer.h"
@@ -23,6 +24,9 @@ enum class TestingRule { kCollocation, kAuto, kGalerkin };
 // converge.
 enum class Preconditioning { kAuto, kDeflation, kFactored };
 
+// A dense matrix, or the fast multipole method (fast_operator.h). kAuto: whichever is sooner ready, as measured.
+enum class OperatorKind { kAuto, kDense, kFast };
+
 struct ElasticOptions {
   ReconstructionOptions reconstruction;
   TestingRule testing = TestingRule::kAuto;
@@ -31,16 +35,19 @@ struct ElasticOptions {
   KrylovOptions krylov;
   DeflationOptions deflation;
   Preconditioning preconditioning = Preconditioning::kAuto;
+  OperatorKind kind = OperatorKind::kAuto;
+  std::size_t dense_unknowns = 6000, dense_slender_unknowns = 12000;  // kAuto: the most a dense matrix is made for
+  FastOptions fast;
   bool double_storage = false;  // of the dense operator; float storage costs 3e-8 .. 2e-6 of the stress
-  std::size_t max_bytes = std::size_t{6} << 30;  // refuse larger dense operators
+  std::size_t max_bytes = std::size_t{6} << 30;  // refuse larger operators
 };
 
 struct ElasticSolution {
   bool ok = false;
-  std::string reason;        // when not ok
-  Vec3Column displacement;   // of the homogeneous problem at vertices, m (add particular.displacement for the whole)
-  KrylovResult krylov;       // iterations and products of all attempts
-  bool factored = false;     // preconditioned by triangular factors
+  std::string reason;       // when not ok
+  Vec3Column displacement;  // of the homogeneous problem at vertices, m (add particular.displacement for the whole)
+  KrylovResult krylov;      // iterations and products of all attempts
+  bool factored = false;    // preconditioned by triangular factors
   // Share of the displacement (rms over the surface, 0 to 1) that is the rigid motion the completion absorbed: what of
   // the load did not balance, and the discretisation's own imbalance.
   Real incompatibility = 0;
@@ -64,16 +71,20 @@ class ElasticBody {
   const Elastic& material() const { return material_; }
   const ElasticOptions& options() const { return options_; }
   const LinearOperator& system() const { return *operator_; }  // without completion
-  std::size_t bytes() const;                                    // of the operator and its factors
+  std::size_t bytes() const;                                   // of the operator and its factors
   const Reconstruction& reconstruction() const { return reconstruction_; }
   const Testing& testing() const { return testing_; }
 
  private:
   template <class Scalar>
-  void build();
+  void build_dense();
+  void build_fast();
+  void precondition();
+  void deflate() const;
   // Makes the factors when they are not there yet; false when they do not fit max_bytes or a pivot vanished.
   bool factor() const;
   KrylovResult iterate(std::span<const Real> b, std::span<Real> x, bool& factored) const;
+  void apply_blocks(std::span<const Real> r, std::span<Real> z) const;
   Real strained_size(std::span<const Real> homogeneous, const ParticularSolution& particular) const;
 
   Elastic material_;
@@ -86,7 +97,9 @@ class ElasticBody {
   std::unique_ptr<LinearOperator> operator_;
   std::unique_ptr<CompletedOperator> completed_;
   std::vector<Mat3> inverse_blocks_;  // of the diagonal, for the preconditioner
-  std::unique_ptr<Deflation> deflation_;
+  mutable std::unique_ptr<Deflation> deflation_;
+  bool slender_ = false;
+  std::size_t operator_bytes_ = 0;
   std::function<std::unique_ptr<FactoredInverse>()> make_factors_;
   mutable std::unique_ptr<FactoredInverse> factored_;
   mutable std::mutex factoring_;

@@ -91,20 +91,4 @@ void SourceBlockBuilder::add_corner(SourceBlock& block, std::uint32_t corner) {
   block.corners.push_back(out);
 }
 
-std::vector<std::uint32_t> curve_order(const Boundary& b, std::vector<std::uint32_t> panels) {
-  const Box box = bounding_box(b.mesh);
-  const Real size = std::max(box.diagonal(), 1e-300);
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> key;
-  for (const std::uint32_t t : panels) {
-    const Vec3 p = (b.centroid[t] - box.low) * (1023 / size);
-    std::uint64_t code = 0;
-    for (int bit = 9; bit >= 0; --bit)
-      for (int k = 0; k < 3; ++k) code = 2 * code + ((static_cast<std::uint64_t>(p[k]) >> bit) & 1);
-    key.push_back({code, t});
-  }
-  std::sort(key.begin(), key.end());
-  for (std::size_t i = 0; i < key.size(); ++i) panels[i] = key[i].second;
-  return panels;
-}
-
 }  // namespace sherd

@@ -42,7 +42,4 @@ class SourceBlockBuilder {
   std::vector<std::uint32_t> node_of_, corner_of_, vertex_of_;
 };
 
-// The given panels in order along a space-filling curve (Morton), so that neighbours in the list are neighbours.
-std::vector<std::uint32_t> curve_order(const Boundary& boundary, std::vector<std::uint32_t> panels);
-
 }  // namespace sherd

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/elastostatic/source_block.h"
+#include "engine/elastostatic/panel_search.h"
 #include "kernels/core/parallel.h"
 #include "kernels/quadrature/gauss.h"
 
@@ -30,7 +30,7 @@ Testing::Testing(const Boundary& boundary, const Reconstruction& reconstruction,
   std::vector<std::uint32_t> panels;
   for (std::uint32_t t = 0; t < tested.size(); ++t)
     if (tested[t]) panels.push_back(t);
-  for (const std::uint32_t t : curve_order(boundary, std::move(panels))) {
+  for (const std::uint32_t t : along_curve(boundary.centroid, std::move(panels))) {
     for (const TrianglePoint& p : kGauss6) gauss_.push_back({t, p.b, p.c, p.weight * boundary.panels[t].area});
   }
 }

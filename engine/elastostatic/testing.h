@@ -1,9 +1,9 @@
 // Where the integral equation is tested, and how its residual becomes one vector equation a vertex. Collocation asks
 // for r(x_v) = 0 at the vertex. Petrov-Galerkin asks for the mean of r against the reconstructed shape function of the
-// vertex: sum over panels and six Gauss points each of w N_v(x)^T r(x) / a_v = 0 (three points a panel err by 20 to 30 %
-// on plates some forty walls wide, measured). Collocation samples the residual exactly where
-// the interpolation error vanishes, which bending of thin walls turns into tens of percent; averaging it removes that
-// (design notes, thin-walls sections 0 and 1). Rows may be mixed: both are scaled alike.
+// vertex: sum over panels and six Gauss points each of w N_v(x)^T r(x) / a_v = 0 (three points a panel err by 20 to 30
+// % on plates some forty walls wide, measured). Collocation samples the residual exactly where the interpolation error
+// vanishes, which bending of thin walls turns into tens of percent; averaging it removes that (design notes, thin-walls
+// sections 0 and 1). Rows may be mixed: both are scaled alike.
 #pragma once
 #include "engine/elastostatic/boundary.h"
 #include "engine/elastostatic/operator_rows.h"

@@ -16,6 +16,7 @@ class TaskGraph {
   // `after` starts when `before` has ended. No cycles (a task on one would never run: run() throws InternalError).
   void precede(Task before, Task after);
   std::size_t size() const { return waits_.size(); }
+  const std::vector<Task>& after(Task before) const { return next_[before]; }  // what waits for it
 
   // Calls body(task) for every task, each once, in an order that respects the edges; parallel. May be called again.
   // Bodies must not throw.

@@ -12,6 +12,7 @@
 #include "kernels/core/parallel.h"
 #include "kernels/fmm/accuracy.h"
 #include "kernels/fmm/evaluator.h"
+#include "kernels/fmm/rbf.h"
 
 namespace sherd::fmm {
 namespace {
@@ -26,8 +27,10 @@ double seconds_since(Clock::time_point start) {
 PairConstants<double> unit_constants(PairSum sum, PairConstants<double> c, double& factor) {
   const auto scale = [&factor](std::initializer_list<double*> values) {
     double largest = 0;
-    for (const double* v : values) largest = std::max(largest, std::abs(*v));
-    if (!std::isfinite(largest)) throw InputError("fast multipole method: a constant is not finite");
+    for (const double* v : values) {
+      if (!std::isfinite(*v)) throw InputError("fast multipole method: a constant is not finite");
+      largest = std::max(largest, std::abs(*v));
+    }
     if (largest == 0) return;
     factor *= largest;
     for (double* v : values) *v /= largest;
@@ -71,6 +74,7 @@ Layout choose_layout(const Points& p, const PlanOptions& o, const CostModel& mod
   double least = std::numeric_limits<double>::infinity();
   const std::size_t most = std::max(p.sources.size(), p.targets.size());
   std::vector<std::size_t> sizes{40, 64, 96, 144, 208, 304};
+  if (o.scheme == Scheme::kRbfSphere) sizes.insert(sizes.end(), {448, 640, 960});  // dear translations
   if (o.leaf_size > 0) sizes = {o.leaf_size};
   for (const Real stretch : {1.0, 1.2, 1.5}) {
     if (stretch > 1 && (o.leaf_size > 0 || most < 2000)) break;
@@ -103,6 +107,8 @@ struct Plan::Impl {
     require_normals("target", shape.target_normals, p.target_normals, targets);
     problem.sum = sum, problem.constants = unit_constants(sum, constants, factor);
     problem.fields = far_fields(sum, problem.constants, accuracy_for(o.tolerance));
+    if (o.scheme == Scheme::kRbfSphere)
+      for (FarField& f : problem.fields) f.translations = rbf_for(f.translations, o.tolerance);
     const bool single_far = o.arithmetic != Arithmetic::kDouble, single_near = o.arithmetic == Arithmetic::kFloat;
     auto start = Clock::now();
     const CostModel model = cost_model(sum, problem.fields, single_far, single_near);
@@ -207,6 +213,9 @@ std::size_t Plan::strengths() const {
 }
 std::size_t Plan::outputs() const {
   return pair_shape(impl_->problem.sum).outputs;
+}
+const TaskGraph& Plan::tasks() const {
+  return impl_->schedule->graph();
 }
 const PlanStatistics& Plan::statistics() const {
   return impl_->statistics;

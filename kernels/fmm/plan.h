@@ -7,6 +7,7 @@
 #include <string>
 
 #include "kernels/core/column.h"
+#include "kernels/core/task_graph.h"
 #include "kernels/fmm/direct.h"
 #include "kernels/fmm/pairs.h"
 
@@ -15,8 +16,9 @@ namespace sherd::fmm {
 // kMixed: expansions in single, pairs in double precision.
 enum class Arithmetic : std::uint8_t { kFloat, kMixed, kDouble };
 
-// kFast: translations.h. kDirect: no far field.
-enum class Scheme : std::uint8_t { kFast, kDirect };
+// kFast: translations.h. kRbfSphere: the reference of rbf.h, whose plans take more memory and reach 3e-8 for Laplace
+// sums, 1e-4 for Kelvin's. kDirect: no far field.
+enum class Scheme : std::uint8_t { kFast, kRbfSphere, kDirect };
 
 struct PlanOptions {
   Real tolerance = 1e-4;  // relative L2 error of the values, 1e-9 .. 1e-2; single precision reaches 1e-5
@@ -66,8 +68,9 @@ class Plan {
   // overwritten. Thread safe; the same bits for any number of threads. Throws InputError where sizes do not fit or a
   // strength is not finite.
   void apply(std::span<const double> strengths, std::span<double> out) const;
-  // The same, and when each task ran.
+  // The same, and when each task ran; numbered as in tasks().
   std::vector<TaskRecord> apply_traced(std::span<const double> strengths, std::span<double> out) const;
+  const TaskGraph& tasks() const;
   const PlanStatistics& statistics() const;
 
  private:

@@ -18,7 +18,8 @@ struct Chunk {
 // Boxes of a chunk that exchange multipoles and locals by the same matrix; sorted by matrix.
 struct FarExchange {
   Tree::Index source, target;
-  std::uint8_t matrix, flips;
+  std::uint16_t matrix;
+  std::uint8_t flips;
 };
 
 class Schedule {

@@ -8,6 +8,8 @@
 #include <tuple>
 
 #include "kernels/core/parallel.h"
+#include "kernels/fmm/kernel_matrix.h"
+#include "kernels/fmm/rbf.h"
 
 namespace sherd::fmm {
 namespace {
@@ -45,43 +47,13 @@ Real sign(unsigned s) {
   return __builtin_popcount(s) % 2 ? -1 : 1;
 }
 
-struct Kernel {
-  std::size_t dim;
-  Real ratio;
-  // Entry (i, j) of the kernel at r.
-  void operator()(const Vec3& r, Real out[3][3]) const {
-    const Real inverse = 1 / norm(r);
-    if (dim == 1) {
-      out[0][0] = inverse;
-      return;
-    }
-    const Vec3 e = r * inverse;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) out[i][j] = (e[i] * e[j] + (i == j ? ratio : 0)) * inverse;
-  }
-};
-
-Matrix kernel_matrix(const Kernel& kernel, const std::vector<Vec3>& targets, const std::vector<Vec3>& sources) {
-  const std::size_t d = kernel.dim;
-  Matrix out(static_cast<Index>(d * targets.size()), static_cast<Index>(d * sources.size()));
-  parallel_for(sources.size(), 16, [&](std::size_t q) {
-    Real k[3][3];
-    for (std::size_t p = 0; p < targets.size(); ++p) {
-      kernel(targets[p] - sources[q], k);
-      for (std::size_t j = 0; j < d; ++j)
-        for (std::size_t i = 0; i < d; ++i) out(static_cast<Index>(d * p + i), static_cast<Index>(d * q + j)) = k[i][j];
-    }
-  });
-  return out;
-}
-
 // Works in the basis of fields that are even or odd under each reflection, where everything that commutes with
 // reflections falls into eight blocks.
 class Builder {
  public:
   Builder(const TranslationOptions& options)
       : options_(options),
-        kernel_{options.family == Family::kKelvin ? std::size_t{3} : std::size_t{1}, options.ratio},
+        kernel_(options),
         inner_(octant_points(options.inner)),
         outer_(octant_points(options.outer)),
         block_(static_cast<Index>(kernel_.dim * inner_.size())) {
@@ -166,7 +138,8 @@ class Builder {
 
   // excite_ excite_^T: covariance of the densities that independent sources throughout the box cause.
   void excitation() {
-    const int n = options_.inner / 2 + 2;
+    // Even, so that no source lies on a plane of reflection; (n / 2)^3 excite each block, more than its modes.
+    const int n = options_.inner / 4 * 2 + 4;
     std::vector<Vec3> sources;  // midpoints of cells, finer towards the faces
     const auto coordinate = [&](int i) { return 0.5 * std::sin(0.5 * std::numbers::pi * (i + 0.5) / n); };
     for (int i = 0; i < n; ++i)
@@ -278,14 +251,14 @@ class Builder {
   }
 
   void far_matrices(Translations& t) const {
-    std::array<std::uint8_t, 64> made{};
+    std::array<std::uint16_t, 64> made{};
     for (int x = 0; x <= 3; ++x)
       for (int y = 0; y <= 3; ++y)
         for (int z = 0; z <= 3; ++z) {
           if (x < 2 && y < 2 && z < 2) continue;
           std::vector<Vec3> moved = t.inner;
           for (Vec3& p : moved) p = p + Vec3{Real(x), Real(y), Real(z)};
-          made[static_cast<std::size_t>(16 * x + 4 * y + z)] = static_cast<std::uint8_t>(t.to_local.size());
+          made[static_cast<std::size_t>(16 * x + 4 * y + z)] = static_cast<std::uint16_t>(t.to_local.size());
           t.to_local.push_back(t.spread.transpose() * (kernel_matrix(kernel_, moved, t.inner) * t.spread));
         }
     for (int x = -3; x <= 3; ++x)
@@ -314,7 +287,8 @@ std::shared_ptr<const Translations> translations(const TranslationOptions& optio
   const std::lock_guard lock(mutex);
   for (const auto& [o, t] : kept)
     if (o == options) return t;
-  kept.emplace_back(options, std::make_shared<const Translations>(Builder(options).build()));
+  kept.emplace_back(options, std::make_shared<const Translations>(options.sphere > 0 ? rbf_translations(options)
+                                                                                     : Builder(options).build()));
   return kept.back().second;
 }
 

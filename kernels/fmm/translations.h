@@ -27,6 +27,7 @@ struct TranslationOptions {
   Real ratio = 2;  // kKelvin
   int inner = 5, outer = 6;
   Real cut = 1e-4;  // basis vectors kept: Hankel singular values above this part of the largest
+  int sphere = 0;   // above 0: this many points on spheres instead, uncompressed (rbf.h), and none of the above three
   bool operator==(const TranslationOptions&) const = default;
 };
 
@@ -43,7 +44,8 @@ struct Translations {
   // odd under the reflections in `flips`. Offset: target minus source, each -3 .. 3.
   std::vector<Eigen::MatrixXd> to_local;
   struct Offset {
-    std::uint8_t matrix = 0xFF, flips = 0;  // 0xFF: not a far pair
+    std::uint16_t matrix = 0xFFFF;  // 0xFFFF: not a far pair
+    std::uint8_t flips = 0;
   };
   std::array<Offset, 343> offset;    // at (x + 3) * 49 + (y + 3) * 7 + z + 3
   std::vector<std::uint8_t> parity;  // of a coefficient: bits of the axes it is odd in

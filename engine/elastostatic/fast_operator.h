@@ -1,0 +1,46 @@
+// The direct formulation's operator without a dense matrix: three point sources a panel summed by the fast multipole
+// method, corrected near the target by stored blocks (near_field.h). Cost and memory grow with the number of panels.
+// Both parts use the Guenter form (dense_operator.h): over a part of the surface the forms differ.
+#pragma once
+#include "engine/elastostatic/linear_operator.h"
+#include "engine/elastostatic/near_field.h"
+#include "kernels/fmm/plan.h"
+
+namespace sherd {
+
+struct FastOptions {
+  Real tolerance = 1e-5;  // of the far field; plates amplify it some fifty times (design notes)
+  fmm::Arithmetic arithmetic = fmm::Arithmetic::kMixed;
+};
+
+class FastOperator final : public LinearOperator {
+ public:
+  // Keeps references to boundary, reconstruction and testing.
+  FastOperator(const Boundary& boundary, const Reconstruction& reconstruction, Real nu, const Testing& testing,
+               const FastOptions& options);
+  std::size_t size() const override { return 3 * boundary_.mesh.vertex_count(); }
+  void apply(std::span<const Real> x, std::span<Real> y) const override;
+  Mat3 diagonal_block(std::size_t p) const override;
+
+  // Why an operator that would take more than max_bytes must not be made; empty when it fits. An estimate.
+  static std::string too_large(const Boundary& boundary, const Testing& testing, std::size_t max_bytes);
+  std::size_t bytes() const { return near_.bytes() + plan_->statistics().bytes; }
+  const NearField& near_field() const { return near_; }
+  const fmm::Plan& plan() const { return *plan_; }
+
+ private:
+  // Strengths f and w of the point sources, six columns, for values at the nodes.
+  std::vector<double> strengths(const Vec3Column& nodes) const;
+
+  const Boundary& boundary_;
+  const Reconstruction& reconstruction_;
+  const Testing& testing_;
+  NearField near_;
+  std::unique_ptr<fmm::Plan> plan_;
+  std::vector<Real> total_;  // double layer of 1 at each point, as the two parts see it
+};
+
+// The points that stand for the panels far away: three a panel, panel by panel.
+Vec3Column far_points(const Boundary& boundary);
+
+}  // namespace sherd

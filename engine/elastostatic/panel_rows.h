@@ -1,0 +1,17 @@
+// One panel's part of the operator's rows, shared by the dense rows (operator_rows.h) and the near field of the fast
+// ones (near_field.h).
+#pragma once
+#include "engine/elastostatic/operator_rows.h"
+
+namespace sherd {
+
+const LaneTables& lane_tables();
+LaneConstants lane_constants(Real nu);
+
+// Adds a panel that some targets are within the closed form's reach of to its ten nodes (lane_kernels.h); the other
+// targets take the six-point rule.
+void add_near_panel(const Boundary& boundary, const TargetGroup& targets, std::uint32_t triangle,
+                    const LanePanel& panel, const std::uint32_t* local, const LaneConstants& constants,
+                    const LaneKernels& kernels, double* nodes, double* total);
+
+}  // namespace sherd

@@ -1,0 +1,34 @@
+#include "engine/elastostatic/row_tester.h"
+
+#include <algorithm>
+
+namespace sherd {
+
+RowTester::RowTester(const Testing& testing, std::size_t first, std::size_t groups, SourceBlockBuilder& builder) {
+  const std::vector<Testing::Point>& points = testing.gauss_points();
+  std::vector<std::uint32_t> panels;  // the points are in their order
+  for (std::size_t i = first * kLanes; i < std::min((first + groups) * kLanes, points.size()); ++i) {
+    if (panels.empty() || panels.back() != points[i].panel) panels.push_back(points[i].panel);
+    slot_.push_back(panels.size() - 1);
+    for (std::size_t a = 0; a < cubic::kNodes; ++a)
+      weights_.push_back(points[i].weight * cubic::evaluate(cubic::kShape[a], points[i].s, points[i].t));
+  }
+  block_ = builder.build(panels);
+}
+
+void RowTester::test(const double* batch, std::size_t stride, std::size_t v0, std::size_t lanes, Work& w) const {
+  const LaneKernels& kernels = lane_kernels();
+  w.nodes.assign(kLaneBlock * block_.nodes.size(), 0), w.rows.assign(kLaneBlock * block_.vertices.size(), 0);
+  w.corners.resize(2 * kLaneBlock * block_.corners.size());
+  for (std::size_t p = 0; p < slot_.size(); ++p) {
+    const double* in = batch + p / kLanes * stride + kLaneBlock * v0 + p % kLanes;
+    double value[kLaneBlock] = {};
+    for (std::size_t l = 0; l < lanes; ++l)
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) value[(3 * j + i) * kLanes + l] = in[kLaneBlock * l + (3 * i + j) * kLanes];
+    kernels.add_weighted(value, weights_.data() + cubic::kNodes * p, block_.local[slot_[p]].data(), w.nodes.data());
+  }
+  kernels.gather(block_.gather(), w.nodes.data(), w.corners.data(), w.rows.data());
+}
+
+}  // namespace sherd

@@ -1,0 +1,129 @@
+#include "kernels/fmm/rbf.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <numbers>
+#include <tuple>
+
+#include "kernels/core/error.h"
+#include "kernels/core/random.h"
+#include "kernels/fmm/kernel_matrix.h"
+
+namespace sherd::fmm {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Eigen::Index;
+
+constexpr Real kRepresenting = 0.6, kChecking = 1.5;  // radii: half of the paper's sizes
+constexpr int kFewest = 8;
+// The near field is exact, so a sum's error is a part of the far field's.
+constexpr Real kFarShare = 1;
+
+// Equal areas along z, the golden angle around it.
+std::vector<Vec3> spiral(int n, Real radius) {
+  const Real angle = std::numbers::pi * (3 - std::sqrt(5.0));
+  std::vector<Vec3> out;
+  for (int i = 0; i < n; ++i) {
+    const Real z = 1 - (2 * i + 1.0) / n, r = std::sqrt(1 - z * z);
+    out.push_back({radius * r * std::cos(angle * i), radius * r * std::sin(angle * i), radius * z});
+  }
+  return out;
+}
+
+std::vector<Vec3> moved(std::vector<Vec3> points, const Vec3& by) {
+  for (Vec3& p : points) p = p + by;
+  return points;
+}
+
+// Densities on the representing sphere from the potential on the checking one.
+Matrix inverse(const Kernel& kernel, int n) {
+  return kernel_matrix(kernel, spiral(n, kChecking), spiral(n, kRepresenting)).partialPivLu().inverse();
+}
+
+int most_points(const Kernel& kernel) {
+  return static_cast<int>(kMaxRbfRank / kernel.dim);
+}
+
+}  // namespace
+
+Translations rbf_translations(const TranslationOptions& options) {
+  const Kernel kernel(options);
+  Translations t;
+  t.dim = kernel.dim;
+  t.inner = spiral(options.sphere, kRepresenting), t.outer = spiral(options.sphere, kChecking);
+  t.rank = t.dim * t.inner.size();
+  const auto k = static_cast<Index>(t.rank);
+  t.up = inverse(kernel, options.sphere);
+  t.spread = Matrix::Identity(k, k);
+  for (unsigned o = 0; o < 8; ++o) {
+    std::vector<Vec3> child = t.inner;
+    const Vec3 centre{o & 1 ? 0.25 : -0.25, o & 2 ? 0.25 : -0.25, o & 4 ? 0.25 : -0.25};
+    for (Vec3& p : child) p = p * 0.5 + centre;
+    t.merge[o] = t.up * kernel_matrix(kernel, t.outer, child);
+  }
+  for (int x = -3; x <= 3; ++x)
+    for (int y = -3; y <= 3; ++y)
+      for (int z = -3; z <= 3; ++z) {
+        if (std::abs(x) < 2 && std::abs(y) < 2 && std::abs(z) < 2) continue;
+        t.offset[static_cast<std::size_t>((x + 3) * 49 + (y + 3) * 7 + z + 3)] = {
+            static_cast<std::uint16_t>(t.to_local.size()), 0};
+        t.to_local.push_back(kernel_matrix(kernel, moved(t.inner, {Real(x), Real(y), Real(z)}), t.inner));
+      }
+  t.parity.assign(t.rank, 0);
+  return t;
+}
+
+Real rbf_error(const TranslationOptions& options) {
+  constexpr std::size_t kPoints = 40;
+  const Kernel kernel(options);
+  Random random(2015);
+  std::vector<Vec3> points(kPoints);
+  for (Vec3& p : points)
+    for (int k = 0; k < 3; ++k) p[k] = random.uniform(-0.5, 0.5);
+  const std::vector<Vec3> inner = spiral(options.sphere, kRepresenting);
+  // Also, transposed, what a local expansion gives at the points.
+  const Matrix densities =
+      inverse(kernel, options.sphere) * kernel_matrix(kernel, spiral(options.sphere, kChecking), points);
+  Real error = 0, all = 0;
+  for (int x = -2; x <= 2; x += 2)
+    for (int y = -2; y <= 2; y += 2)
+      for (int z = -2; z <= 2; z += 2) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const Vec3 offset{Real(x), Real(y), Real(z)};
+        const Matrix exact = kernel_matrix(kernel, moved(points, offset), points);
+        const Matrix across = kernel_matrix(kernel, moved(inner, offset), inner) * densities;
+        error += (densities.transpose() * across - exact).squaredNorm(), all += exact.squaredNorm();
+      }
+  return std::sqrt(error / all);
+}
+
+TranslationOptions rbf_for(TranslationOptions options, Real tolerance) {
+  static std::mutex mutex;
+  // Errors of the numbers of points tried so far, by family and ratio.
+  static std::map<std::tuple<Family, Real>, std::map<int, Real>> measured;
+  const std::lock_guard lock(mutex);
+  options.inner = options.outer = 0, options.cut = 0;
+  if (options.family == Family::kLaplace) options.ratio = 0;
+  const int most = most_points(Kernel(options));
+  std::map<int, Real>& errors = measured[{options.family, options.ratio}];
+  Real best = 1;
+  for (int n = kFewest; n <= most; n += 2 + n / 16) {
+    options.sphere = n;
+    const auto found = errors.find(n);
+    const Real error = found != errors.end() ? found->second : (errors[n] = rbf_error(options));
+    best = std::min(best, error);
+    if (error * kFarShare <= tolerance) return options;
+  }
+  throw InputError(fmt::format(
+      "fast multipole method: the scheme rbf-sphere reaches {:.1g} with at most {} points a sphere, not the tolerance "
+      "{:g}; use the default scheme",
+      best * kFarShare, most, tolerance));
+}
+
+}  // namespace sherd::fmm

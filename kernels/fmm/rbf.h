@@ -1,0 +1,28 @@
+// The far field of Zhu, Bridson & Greif (2015, section 5), kept as a reference: expansions are densities at points of a
+// representing sphere about the box, found by an LU decomposition from the potential at as many points of a checking
+// sphere. No compression.
+//
+// Around the unit box the spheres have size 1.2 and 3.0. Read as diameters: as radii, the representing spheres of two
+// boxes that do not touch reach into each other, and no number of points brings the error below 1e-2 (Laplace).
+// The paper names no points; here both spheres carry the Fibonacci spiral in the same directions, which makes the
+// matrix symmetric and, for Laplace, positive definite. Kelvin's has modes of both signs, and for some numbers of
+// points it is nearly singular; such numbers are found by measuring and passed over.
+#pragma once
+#include "kernels/fmm/translations.h"
+
+namespace sherd::fmm {
+
+// options.sphere points on either sphere.
+Translations rbf_translations(const TranslationOptions& options);
+
+// Root mean square over pairs of points in separated boxes of the expansions' error, relative to the kernel: what
+// random sources leave in the far field. Without the error of moving expansions between levels.
+Real rbf_error(const TranslationOptions& options);
+
+// The fewest points whose rbf_error() leaves the relative L2 error of values below the tolerance; family and ratio as
+// given. Throws InputError where expansions of at most kMaxRbfRank numbers do not reach it. Thread safe; remembered.
+TranslationOptions rbf_for(TranslationOptions options, Real tolerance);
+
+inline constexpr std::size_t kMaxRbfRank = 384;  // its 316 dense matrices take 373 MB
+
+}  // namespace sherd::fmm
