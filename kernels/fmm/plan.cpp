@@ -94,7 +94,7 @@ struct Plan::Impl {
   PlanStatistics statistics;
   Problem problem;
   double factor = 1;
-  std::size_t sources, targets;
+  std::size_t sources, targets, sphere_bytes = 0;
   std::unique_ptr<Tree> tree;
   std::unique_ptr<InteractionLists> lists;
   std::unique_ptr<Schedule> schedule;
@@ -107,10 +107,9 @@ struct Plan::Impl {
     require_normals("target", shape.target_normals, p.target_normals, targets);
     problem.sum = sum, problem.constants = unit_constants(sum, constants, factor);
     problem.fields = far_fields(sum, problem.constants, accuracy_for(o.tolerance));
-    if (o.scheme == Scheme::kRbfSphere)
-      for (FarField& f : problem.fields) f.translations = rbf_for(f.translations, o.tolerance);
     const bool single_far = o.arithmetic != Arithmetic::kDouble, single_near = o.arithmetic == Arithmetic::kFloat;
     auto start = Clock::now();
+    if (o.scheme == Scheme::kRbfSphere) choose_spheres(o, single_far ? sizeof(float) : sizeof(double));
     const CostModel model = cost_model(sum, problem.fields, single_far, single_near);
     const auto first = translations(problem.fields[0].translations);
     for (const FarField& f : problem.fields) statistics.rank.push_back(translations(f.translations)->rank);
@@ -160,6 +159,19 @@ struct Plan::Impl {
     statistics.arrays_seconds = seconds_since(start);
   }
 
+  // Their memory is known before they are made.
+  void choose_spheres(const PlanOptions& o, std::size_t number) {
+    for (FarField& f : problem.fields) {
+      f.translations = rbf_for(f.translations, o.tolerance);
+      sphere_bytes += rbf_bytes(f.translations, number);
+    }
+    if (sphere_bytes > o.max_bytes)
+      throw InputError(fmt::format(
+          "fast multipole method: the scheme rbf-sphere needs {} MiB for its translations, more than the {} MiB "
+          "allowed; use the default scheme or raise the limit",
+          sphere_bytes >> 20, o.max_bytes >> 20));
+  }
+
   // Counted before it is taken, and remembered.
   void refuse_too_large(const PlanOptions& o, const ListCounts& counts, bool single_far, bool single_near) {
     const PairShape shape = pair_shape(problem.sum);
@@ -169,7 +181,7 @@ struct Plan::Impl {
       coefficients += static_cast<double>(f.columns * translations(f.translations)->rank);
     const double boxes = static_cast<double>(tree->box_count()), ns = static_cast<double>(sources),
                  nt = static_cast<double>(targets);
-    const double bytes = 28 * (ns + nt) + 100 * boxes + 24 * counts.far_pairs +
+    const double bytes = static_cast<double>(sphere_bytes) + 28 * (ns + nt) + 100 * boxes + 24 * counts.far_pairs +
                          ns * near * (3.0 + static_cast<double>(shape.strengths)) +
                          1.2 * nt * (near * 3 + (near + far) * static_cast<double>(shape.outputs)) +
                          2 * boxes * coefficients * far;

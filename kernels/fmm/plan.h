@@ -16,7 +16,7 @@ namespace sherd::fmm {
 // kMixed: expansions in single, pairs in double precision.
 enum class Arithmetic : std::uint8_t { kFloat, kMixed, kDouble };
 
-// kFast: translations.h. kRbfSphere: the reference of rbf.h, whose plans take more memory and reach 3e-8 for Laplace
+// kFast: translations.h. kRbfSphere: the reference of rbf.h, whose plans take more memory and reach 1e-7 for Laplace
 // sums, 1e-4 for Kelvin's. kDirect: no far field.
 enum class Scheme : std::uint8_t { kFast, kRbfSphere, kDirect };
 

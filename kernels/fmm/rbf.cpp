@@ -22,8 +22,7 @@ using Eigen::Index;
 
 constexpr Real kRepresenting = 0.6, kChecking = 1.5;  // radii: half of the paper's sizes
 constexpr int kFewest = 8;
-// The near field is exact, so a sum's error is a part of the far field's.
-constexpr Real kFarShare = 1;
+constexpr Real kSumError = 1.25;  // of a whole sum, in units of rbf_error()
 
 // Equal areas along z, the golden angle around it.
 std::vector<Vec3> spiral(int n, Real radius) {
@@ -113,17 +112,22 @@ TranslationOptions rbf_for(TranslationOptions options, Real tolerance) {
   const int most = most_points(Kernel(options));
   std::map<int, Real>& errors = measured[{options.family, options.ratio}];
   Real best = 1;
-  for (int n = kFewest; n <= most; n += 2 + n / 16) {
+  for (int n = kFewest; n <= most; n += 1 + n / 32) {
     options.sphere = n;
     const auto found = errors.find(n);
     const Real error = found != errors.end() ? found->second : (errors[n] = rbf_error(options));
     best = std::min(best, error);
-    if (error * kFarShare <= tolerance) return options;
+    if (kSumError * error <= tolerance) return options;
   }
   throw InputError(fmt::format(
       "fast multipole method: the scheme rbf-sphere reaches {:.1g} with at most {} points a sphere, not the tolerance "
       "{:g}; use the default scheme",
-      best * kFarShare, most, tolerance));
+      kSumError * best, most, tolerance));
+}
+
+std::size_t rbf_bytes(const TranslationOptions& options, std::size_t number) {
+  const std::size_t rank = Kernel(options).dim * static_cast<std::size_t>(options.sphere);
+  return (316 + 8 + 1) * rank * rank * (sizeof(double) + number);
 }
 
 }  // namespace sherd::fmm

@@ -147,23 +147,21 @@ class Builder {
         for (int k = 0; k < n; ++k) sources.push_back({coordinate(i), coordinate(j), coordinate(k)});
     parallel_for(8, 1, [&](std::size_t b) {
       const Matrix cause = inverse_[b] * block(static_cast<unsigned>(b), outer_, sources);
-      excite_[b] = factor(cause * cause.transpose());
+      excite_[b] = factor(cause.transpose());
     });
   }
 
-  // L with L L^T = m, for a positive semidefinite m.
+  // L with L L^T = m^T m. Never through the product, whose rounding would bury what is below 1e-8 of the largest.
   static Matrix factor(const Matrix& m) {
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(m);
-    const Eigen::VectorXd w = eigen.eigenvalues();
-    Index first = 0;
-    while (first < w.size() && w[first] <= 1e-15 * w[w.size() - 1]) ++first;
-    const Index kept = w.size() - first;
-    return eigen.eigenvectors().rightCols(kept) * w.tail(kept).cwiseSqrt().asDiagonal();
+    if (m.rows() <= m.cols()) return m.transpose();
+    const Eigen::HouseholderQR<Matrix> qr(m);
+    return qr.matrixQR().topRows(m.cols()).triangularView<Eigen::Upper>().transpose();
   }
 
-  // observe_[b] = sum over the 316 far offsets of M C M^T, C the excitation: by duality what the targets there see.
+  // observe_[b] observe_[b]^T = sum over the 316 far offsets of M C M^T, C the excitation: by duality what the targets
+  // there see.
   void observation() {
-    for (Matrix& m : observe_) m = Matrix::Zero(block_, block_);
+    for (Matrix& m : observe_) m.resize(block_, 0);
     std::array<Matrix, 8> full;
     for (unsigned b = 0; b < 8; ++b) full[b] = unfold(b, excite_[b]);
     const std::vector<Vec3> in = images(inner_);
@@ -176,16 +174,21 @@ class Builder {
           const Matrix m = kernel_matrix(kernel_, moved, in);
           const Real images = 8.0 / ((x ? 1 : 2) * (y ? 1 : 2) * (z ? 1 : 2));
           const Real orders = x == y && y == z ? 1 : (x == y || y == z ? 3 : 6);
-          std::array<std::array<Matrix, 8>, 8> part;
-          parallel_for(8, 1, [&](std::size_t b) {
-            const Matrix seen = m * full[b];
-            for (unsigned c = 0; c < 8; ++c) {
-              const Matrix f = fold(c, seen);
-              part[b][c] = f * f.transpose() * (images * orders);
+          const Real weight = std::sqrt(images * orders);
+          std::array<Matrix, 8> seen;
+          parallel_for(8, 1, [&](std::size_t c) { seen[c] = m * full[c]; });
+          parallel_for(8, 1, [&](std::size_t c) {
+            Index rows = observe_[c].cols();
+            for (const Matrix& v : seen) rows += v.cols();
+            Matrix all(rows, block_);
+            all.topRows(observe_[c].cols()) = observe_[c].transpose();
+            Index at = observe_[c].cols();
+            for (const Matrix& v : seen) {
+              all.middleRows(at, v.cols()) = fold(static_cast<unsigned>(c), v).transpose() * weight;
+              at += v.cols();
             }
+            observe_[c] = factor(all);
           });
-          for (unsigned b = 0; b < 8; ++b)
-            for (unsigned c = 0; c < 8; ++c) observe_[c] += part[b][c];
         }
     average_axes();
   }
@@ -197,8 +200,9 @@ class Builder {
     std::map<std::tuple<Real, Real, Real>, std::size_t> place;
     for (std::size_t i = 0; i < inner_.size(); ++i) place[{inner_[i].x, inner_[i].y, inner_[i].z}] = i;
     std::array<Matrix, 8> sum;
-    for (Matrix& m : sum) m = Matrix::Zero(block_, block_);
-    for (const auto& o : orders) {
+    for (Matrix& m : sum) m.resize(6 * block_, block_);
+    for (std::size_t k = 0; k < orders.size(); ++k) {
+      const auto& o = orders[k];
       std::vector<Index> to(static_cast<std::size_t>(block_));
       for (std::size_t p = 0; p < inner_.size(); ++p) {
         const Vec3& v = inner_[p];
@@ -212,11 +216,11 @@ class Builder {
       for (unsigned b = 0; b < 8; ++b) {
         const unsigned from = ((b & 1u) << o[0]) | (((b >> 1) & 1u) << o[1]) | (((b >> 2) & 1u) << o[2]);
         for (Index i = 0; i < block_; ++i)
-          for (Index j = 0; j < block_; ++j)
-            sum[b](i, j) += observe_[from](to[static_cast<std::size_t>(i)], to[static_cast<std::size_t>(j)]) / 6;
+          sum[b].col(i).segment(static_cast<Index>(k) * block_, block_) =
+              observe_[from].row(to[static_cast<std::size_t>(i)]).transpose() / std::sqrt(6.0);
       }
     }
-    observe_ = std::move(sum);
+    for (unsigned b = 0; b < 8; ++b) observe_[b] = factor(sum[b]);
   }
 
   // Balanced truncation: project = S^-1/2 Q^T Lo^T, spread = Lc R S^-1/2 from Lo^T Lc = Q S R^T.
@@ -225,7 +229,7 @@ class Builder {
     std::array<Eigen::VectorXd, 8> hankel;
     Real largest = 0;
     for (unsigned b = 0; b < 8; ++b) {
-      const Matrix lo = factor(observe_[b]);
+      const Matrix& lo = observe_[b];
       const Eigen::BDCSVD<Matrix> svd(lo.transpose() * excite_[b], Eigen::ComputeThinU | Eigen::ComputeThinV);
       hankel[b] = svd.singularValues();
       const Eigen::VectorXd root = hankel[b].cwiseSqrt().cwiseInverse();
