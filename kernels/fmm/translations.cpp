@@ -132,7 +132,7 @@ class Builder {
                                       Eigen::ComputeThinU | Eigen::ComputeThinV);
       Eigen::VectorXd w = svd.singularValues();
       for (Index i = 0; i < w.size(); ++i) w[i] = w[i] > kInverseCut * w[0] ? 1 / w[i] : 0;
-      inverse_[b] = svd.matrixV() * w.asDiagonal() * svd.matrixU().transpose();
+      solve_[b] = svd.matrixV() * w.asDiagonal(), modes_[b] = svd.matrixU().transpose();
     });
   }
 
@@ -146,7 +146,7 @@ class Builder {
       for (int j = 0; j < n; ++j)
         for (int k = 0; k < n; ++k) sources.push_back({coordinate(i), coordinate(j), coordinate(k)});
     parallel_for(8, 1, [&](std::size_t b) {
-      const Matrix cause = inverse_[b] * block(static_cast<unsigned>(b), outer_, sources);
+      const Matrix cause = solve_[b] * (modes_[b] * block(static_cast<unsigned>(b), outer_, sources));
       excite_[b] = factor(cause.transpose());
     });
   }
@@ -233,7 +233,7 @@ class Builder {
       const Eigen::BDCSVD<Matrix> svd(lo.transpose() * excite_[b], Eigen::ComputeThinU | Eigen::ComputeThinV);
       hankel[b] = svd.singularValues();
       const Eigen::VectorXd root = hankel[b].cwiseSqrt().cwiseInverse();
-      left[b] = root.asDiagonal() * svd.matrixU().transpose() * lo.transpose() * inverse_[b];
+      left[b] = (root.asDiagonal() * svd.matrixU().transpose() * lo.transpose() * solve_[b]) * modes_[b];
       right[b] = excite_[b] * svd.matrixV() * root.asDiagonal();
       largest = std::max(largest, hankel[b][0]);
     }
@@ -280,7 +280,8 @@ class Builder {
   Kernel kernel_;
   std::vector<Vec3> inner_, outer_;  // of the positive octant
   Index block_;
-  std::array<Matrix, 8> inverse_, excite_, observe_;
+  // Density from the potential: solve_ modes_. Never multiplied: large numbers would cancel, and their rounding stay.
+  std::array<Matrix, 8> solve_, modes_, excite_, observe_;
 };
 
 }  // namespace
