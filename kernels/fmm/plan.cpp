@@ -109,7 +109,7 @@ struct Plan::Impl {
     problem.fields = far_fields(sum, problem.constants, accuracy_for(o.tolerance));
     const bool single_far = o.arithmetic != Arithmetic::kDouble, single_near = o.arithmetic == Arithmetic::kFloat;
     auto start = Clock::now();
-    if (o.scheme == Scheme::kRbfSphere) choose_spheres(o, single_far ? sizeof(float) : sizeof(double));
+    if (o.scheme == Scheme::kRbfSphere) choose_spheres(o, single_far);
     const CostModel model = cost_model(sum, problem.fields, single_far, single_near);
     const auto first = translations(problem.fields[0].translations);
     for (const FarField& f : problem.fields) statistics.rank.push_back(translations(f.translations)->rank);
@@ -160,10 +160,10 @@ struct Plan::Impl {
   }
 
   // Their memory is known before they are made.
-  void choose_spheres(const PlanOptions& o, std::size_t number) {
+  void choose_spheres(const PlanOptions& o, bool single_far) {
     for (FarField& f : problem.fields) {
-      f.translations = rbf_for(f.translations, o.tolerance);
-      sphere_bytes += rbf_bytes(f.translations, number);
+      f.translations = rbf_for(f.translations, o.tolerance, single_far);
+      sphere_bytes += rbf_bytes(f.translations, single_far ? sizeof(float) : sizeof(double));
     }
     if (sphere_bytes > o.max_bytes)
       throw InputError(fmt::format(

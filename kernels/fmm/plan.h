@@ -17,7 +17,7 @@ namespace sherd::fmm {
 enum class Arithmetic : std::uint8_t { kFloat, kMixed, kDouble };
 
 // kFast: translations.h. kRbfSphere: the reference of rbf.h, whose plans take more memory and reach 1e-7 for Laplace
-// sums, 1e-4 for Kelvin's. kDirect: no far field.
+// sums and 1e-4 for Kelvin's, with expansions in single precision 3e-4 and 3e-3. kDirect: no far field.
 enum class Scheme : std::uint8_t { kFast, kRbfSphere, kDirect };
 
 struct PlanOptions {

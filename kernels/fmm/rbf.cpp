@@ -78,17 +78,22 @@ Translations rbf_translations(const TranslationOptions& options) {
   return t;
 }
 
-Real rbf_error(const TranslationOptions& options) {
+namespace {
+
+// Every product in T, as plans make them.
+template <class T>
+Real measured_error(const TranslationOptions& options) {
   constexpr std::size_t kPoints = 40;
+  using Work = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
   const Kernel kernel(options);
   Random random(2015);
   std::vector<Vec3> points(kPoints);
   for (Vec3& p : points)
     for (int k = 0; k < 3; ++k) p[k] = random.uniform(-0.5, 0.5);
   const std::vector<Vec3> inner = spiral(options.sphere, kRepresenting);
-  // Also, transposed, what a local expansion gives at the points.
-  const Matrix densities =
-      inverse(kernel, options.sphere) * kernel_matrix(kernel, spiral(options.sphere, kChecking), points);
+  const Work up = inverse(kernel, options.sphere).cast<T>();
+  const Work check = kernel_matrix(kernel, spiral(options.sphere, kChecking), points).cast<T>();
+  const Work densities = up * check;
   Real error = 0, all = 0;
   for (int x = -2; x <= 2; x += 2)
     for (int y = -2; y <= 2; y += 2)
@@ -96,33 +101,42 @@ Real rbf_error(const TranslationOptions& options) {
         if (x == 0 && y == 0 && z == 0) continue;
         const Vec3 offset{Real(x), Real(y), Real(z)};
         const Matrix exact = kernel_matrix(kernel, moved(points, offset), points);
-        const Matrix across = kernel_matrix(kernel, moved(inner, offset), inner) * densities;
-        error += (densities.transpose() * across - exact).squaredNorm(), all += exact.squaredNorm();
+        const Work across = kernel_matrix(kernel, moved(inner, offset), inner).cast<T>();
+        const Work local = across * densities;
+        const Work outer = up.transpose() * local;
+        const Work values = check.transpose() * outer;
+        error += (values.template cast<double>() - exact).squaredNorm(), all += exact.squaredNorm();
       }
   return std::sqrt(error / all);
 }
 
-TranslationOptions rbf_for(TranslationOptions options, Real tolerance) {
+}  // namespace
+
+Real rbf_error(const TranslationOptions& options, bool single) {
+  return single ? measured_error<float>(options) : measured_error<double>(options);
+}
+
+TranslationOptions rbf_for(TranslationOptions options, Real tolerance, bool single) {
   static std::mutex mutex;
-  // Errors of the numbers of points tried so far, by family and ratio.
-  static std::map<std::tuple<Family, Real>, std::map<int, Real>> measured;
+  // Errors of the numbers of points tried so far, by family, ratio and arithmetic.
+  static std::map<std::tuple<Family, Real, bool>, std::map<int, Real>> measured;
   const std::lock_guard lock(mutex);
   options.inner = options.outer = 0, options.cut = 0;
   if (options.family == Family::kLaplace) options.ratio = 0;
   const int most = most_points(Kernel(options));
-  std::map<int, Real>& errors = measured[{options.family, options.ratio}];
+  std::map<int, Real>& errors = measured[{options.family, options.ratio, single}];
   Real best = 1;
   for (int n = kFewest; n <= most; n += 1 + n / 32) {
     options.sphere = n;
     const auto found = errors.find(n);
-    const Real error = found != errors.end() ? found->second : (errors[n] = rbf_error(options));
+    const Real error = found != errors.end() ? found->second : (errors[n] = rbf_error(options, single));
     best = std::min(best, error);
     if (kSumError * error <= tolerance) return options;
   }
   throw InputError(fmt::format(
-      "fast multipole method: the scheme rbf-sphere reaches {:.1g} with at most {} points a sphere, not the tolerance "
-      "{:g}; use the default scheme",
-      kSumError * best, most, tolerance));
+      "fast multipole method: the scheme rbf-sphere reaches {:.1g} with at most {} points a sphere in {} precision, "
+      "not the tolerance {:g}; use the default scheme",
+      kSumError * best, most, single ? "single" : "double", tolerance));
 }
 
 std::size_t rbf_bytes(const TranslationOptions& options, std::size_t number) {
