@@ -134,7 +134,7 @@ TranslationOptions rbf_for(TranslationOptions options, Real tolerance, bool sing
     if (kSumError * error <= tolerance) return options;
   }
   throw InputError(fmt::format(
-      "fast multipole method: the scheme rbf-sphere reaches {:.1g} with at most {} points a sphere in {} precision, "
+      "fast multipole method: the scheme rbf-sphere reaches {:.2g} with at most {} points a sphere in {} precision, "
       "not the tolerance {:g}; use the default scheme",
       kSumError * best, most, single ? "single" : "double", tolerance));
 }

@@ -6,8 +6,7 @@
 // boxes that do not touch reach into each other, and no number of points brings the error below 1e-2 (Laplace).
 // The paper names no points; here both spheres carry the Fibonacci spiral in the same directions, which makes
 // Laplace's matrix symmetric and positive definite. Kelvin's is not, and for some numbers of points it is nearly
-// singular: errors above 1; such numbers are found by measuring and
-// passed over.
+// singular: errors above 1; such numbers are found by measuring and passed over.
 #pragma once
 #include "kernels/fmm/translations.h"
 
