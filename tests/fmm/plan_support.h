@@ -67,9 +67,12 @@ inline PlanCase plan_case(PairSum sum, const Vec3Column& sources, const Vec3Colu
 
 // Relative L2 error; absolute where the right answer is zero.
 inline double relative_error(const std::vector<double>& got, const std::vector<double>& right) {
-  double difference = 0, size = 0;
+  double difference = 0, size = 0, largest = 0;
+  for (const double v : right) largest = std::max(largest, std::abs(v));
+  const double unit = largest > 0 ? largest : 1;  // squares must neither vanish nor overflow
   for (std::size_t i = 0; i < right.size(); ++i)
-    difference += (got[i] - right[i]) * (got[i] - right[i]), size += right[i] * right[i];
+    difference += (got[i] / unit - right[i] / unit) * (got[i] / unit - right[i] / unit),
+        size += (right[i] / unit) * (right[i] / unit);
   return size > 0 ? std::sqrt(difference / size) : std::sqrt(difference);
 }
 

@@ -10,6 +10,7 @@
 
 #include "kernels/core/error.h"
 #include "kernels/core/parallel.h"
+#include "tools/bench/fmm.h"
 #include "tools/bench/pairs.h"
 #include "tools/bench/stress.h"
 
@@ -95,6 +96,32 @@ CLI::App* add_pairs(CLI::App& app, sherd::bench::PairsOptions& o) {
   return pairs;
 }
 
+CLI::App* add_fmm(CLI::App& app, sherd::bench::FmmOptions& o) {
+  CLI::App* fmm = app.add_subcommand("fmm", "time and error of the fast multipole method; without options a report");
+  fmm->add_option("--points", o.points, "CSV file with columns x, y, z");
+  fmm->add_option("--mesh", o.mesh, "mesh file: its vertices");
+  fmm->add_option("--surface", o.surfaces, "sphere:N or cube:N (points throughout the cube), at random");
+  fmm->add_option("--kernel", o.kernels)->check(CLI::IsMember(sherd::bench::fmm_kernels()));
+  fmm->add_option("--tolerance", o.tolerances, "relative L2 error, 1e-9 .. 1e-2")->check(CLI::PositiveNumber);
+  fmm->add_option("--precision", o.precisions, "mixed: expansions in float, near field in double")
+      ->check(CLI::IsMember({"float", "mixed", "double"}));
+  fmm->add_option("--threads", o.threads)->check(CLI::Range(1, 4096));
+  fmm->add_option("--scheme", o.schemes, "rbf-sphere is the paper's")
+      ->check(CLI::IsMember({"default", "rbf-sphere", "direct"}));
+  fmm->add_option("--leaf", o.leaf, "most points of a leaf; 0: by the cost model")->capture_default_str();
+  fmm->add_option("--applies", o.applies, "at least; the median counts")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  fmm->add_option("--gigabytes", o.gigabytes, "largest plan")->check(CLI::PositiveNumber)->capture_default_str();
+  fmm->add_flag("--large", o.large, "report: 3.6 million points too");
+  fmm->add_option("--json", o.json, "file for the numbers");
+  fmm->add_option("--trace", o.trace, "file for the tasks of one application, for Perfetto");
+  fmm->footer(
+      "Several values of an option make several rows.\nExamples:\n  sherd-bench fmm\n  sherd-bench fmm --surface "
+      "sphere:1000000 --precision float double --threads 1 2 --trace trace.json");
+  return fmm;
+}
+
 int run_micro(const std::string& program, std::vector<std::string> rest) {
   std::string name = program;
   std::vector<char*> arguments{name.data()};
@@ -120,7 +147,10 @@ int main(int argc, char** argv) {
   CLI::App* stress = add_stress(app, command);
   sherd::bench::PairsOptions pairs_options;
   CLI::App* pairs = add_pairs(app, pairs_options);
+  sherd::bench::FmmOptions fmm_options;
+  CLI::App* fmm = add_fmm(app, fmm_options);
   CLI11_PARSE(app, argc, argv);
+  if (*fmm) return sherd::bench::run_fmm(fmm_options);
   if (*pairs) return sherd::bench::run_pairs(pairs_options);
   return *stress ? run_stress(command) : run_micro(argv[0], micro->remaining());
 }
