@@ -2,11 +2,30 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/elastostatic/panel_rows.h"
 #include "kernels/core/parallel.h"
 #include "kernels/quadrature/gauss.h"
 
 namespace sherd {
+
+namespace {
+
+// 1 and more: bulky. Ball and cube 1.9, bar 10:1 0.24, plate 100:1 0.07.
+Real bulk(const Boundary& b) {
+  return 20 * signed_volume(b.mesh) / (b.area * bounding_box(b.mesh).diagonal());
+}
+
+}  // namespace
+
+bool is_bulky(const Boundary& b) {
+  return bulk(b) >= 1;
+}
+
+Real far_tolerance(const Boundary& b) {
+  return std::clamp(1e-5 * bulk(b) * bulk(b), 1e-8, 1e-5);
+}
 
 Vec3Column far_points(const Boundary& b) {
   Vec3Column out(3 * b.panels.size());
@@ -38,12 +57,15 @@ FastOperator::FastOperator(const Boundary& b, const Reconstruction& r, Real nu, 
   for (std::size_t i = 0; i < total_.size(); ++i) total_[i] += value[i];
 }
 
-std::string FastOperator::too_large(const Boundary& b, const Testing& testing, std::size_t max_bytes) {
+std::size_t FastOperator::estimated_bytes(std::size_t triangles, std::size_t vertices, std::size_t tested) {
   // Measured on regular meshes: 260 blocks of 40 bytes a collocated row, twice as many a tested one; points with their
-  // strengths, values and boxes.
-  const std::size_t tested = testing.galerkin_count(), rows = b.mesh.vertex_count() + tested;
-  const std::size_t points = 3 * b.panels.size() + testing.collocated().size() + testing.gauss_points().size();
-  const std::size_t bytes = rows * 11'000 + points * 250;
+  // strengths, values and boxes, twelve points a tested vertex.
+  const std::size_t points = 3 * triangles + vertices + 11 * tested;
+  return (vertices + tested) * 11'000 + points * 250;
+}
+
+std::string FastOperator::too_large(const Boundary& b, const Testing& testing, std::size_t max_bytes) {
+  const std::size_t bytes = estimated_bytes(b.panels.size(), b.mesh.vertex_count(), testing.galerkin_count());
   if (bytes <= max_bytes) return {};
   return fmt::format("{} triangles need an operator of about {} MiB, more than the {} MiB allowed: raise edge_length",
                      b.panels.size(), bytes >> 20, max_bytes >> 20);

@@ -9,20 +9,27 @@
 namespace sherd {
 
 struct FastOptions {
-  Real tolerance = 1e-5;  // of the far field; plates amplify it some fifty times (design notes)
+  Real tolerance = 0;  // of the far field; 0: far_tolerance() of the body
   fmm::Arithmetic arithmetic = fmm::Arithmetic::kMixed;
 };
 
+// Bending of slender bodies divides errors of the operator by its small singular values, which fall with the square of
+// thickness (2 volume / area) over length (diagonal): 1e-5 for bulky bodies, down to 1e-8.
+Real far_tolerance(const Boundary& boundary);
+bool is_bulky(const Boundary& boundary);
+
 class FastOperator final : public LinearOperator {
  public:
-  // Keeps references to boundary, reconstruction and testing.
+  // Keeps references to boundary, reconstruction and testing. options.tolerance > 0.
   FastOperator(const Boundary& boundary, const Reconstruction& reconstruction, Real nu, const Testing& testing,
                const FastOptions& options);
   std::size_t size() const override { return 3 * boundary_.mesh.vertex_count(); }
   void apply(std::span<const Real> x, std::span<Real> y) const override;
   Mat3 diagonal_block(std::size_t p) const override;
 
-  // Why an operator that would take more than max_bytes must not be made; empty when it fits. An estimate.
+  // Estimates, for so many triangles, vertices and, of these, tested ones (not collocated): memory, and why an operator
+  // that would take more than max_bytes must not be made; empty when it fits.
+  static std::size_t estimated_bytes(std::size_t triangles, std::size_t vertices, std::size_t tested);
   static std::string too_large(const Boundary& boundary, const Testing& testing, std::size_t max_bytes);
   std::size_t bytes() const { return near_.bytes() + plan_->statistics().bytes; }
   const NearField& near_field() const { return near_; }

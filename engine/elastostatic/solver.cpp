@@ -26,8 +26,8 @@ std::vector<VertexTest> vertex_tests(const SurfaceMesh& mesh, const ElasticOptio
 }
 
 // Without a coarse space, the fast operator's bodies converge in this many iterations or are thin.
-constexpr int kPlainIterations = 50;
-constexpr std::size_t kFastCoarseDimension = 200;
+constexpr int kPlainIterations = 120;
+constexpr std::size_t kFastCoarseDimension = 120;
 
 // Walls so thin that the coarse space would need hundreds of iterations: over half a percent of the surface.
 bool has_slender_walls(const SurfaceMesh& mesh) {
@@ -55,7 +55,7 @@ ElasticBody::ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const
   const std::size_t n = 3 * mesh.vertex_count();
   const bool dense = options.kind == OperatorKind::kDense ||
                      (options.kind == OperatorKind::kAuto &&
-                      n <= (slender_ ? options.dense_slender_unknowns : options.dense_unknowns));
+                      n <= (is_bulky(boundary_) ? options.dense_bulky_unknowns : options.dense_unknowns));
   reason_ = dense ? too_large(mesh.triangle_count(), n, options.double_storage, options.max_bytes)
                   : FastOperator::too_large(boundary_, testing_, options.max_bytes);
   if (!reason_.empty()) return;
@@ -78,7 +78,12 @@ void ElasticBody::build_dense() {
 }
 
 void ElasticBody::build_fast() {
-  auto fast = std::make_unique<FastOperator>(boundary_, reconstruction_, material_.nu, testing_, options_.fast);
+  FastOptions o = options_.fast;
+  if (o.tolerance <= 0) o.tolerance = far_tolerance(boundary_);
+  // Rounding must stay below the residual asked for, or the iteration stalls: single precision has 1e-6 of the
+  // displacement, which slender bodies make large against the right-hand side.
+  if (o.tolerance < 0.9e-5 || options_.krylov.tolerance < 1e-5) o.arithmetic = fmm::Arithmetic::kDouble;
+  auto fast = std::make_unique<FastOperator>(boundary_, reconstruction_, material_.nu, testing_, o);
   operator_bytes_ = fast->bytes();
   operator_ = std::move(fast);
 }

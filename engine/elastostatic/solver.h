@@ -36,7 +36,8 @@ struct ElasticOptions {
   DeflationOptions deflation;
   Preconditioning preconditioning = Preconditioning::kAuto;
   OperatorKind kind = OperatorKind::kAuto;
-  std::size_t dense_unknowns = 6000, dense_slender_unknowns = 12000;  // kAuto: the most a dense matrix is made for
+  // kAuto: the most a dense matrix is made for. Bodies that are not bulky take a finer far field and many products.
+  std::size_t dense_bulky_unknowns = 6000, dense_unknowns = 12000;
   FastOptions fast;
   bool double_storage = false;  // of the dense operator; float storage costs 3e-8 .. 2e-6 of the stress
   std::size_t max_bytes = std::size_t{6} << 30;  // refuse larger operators

@@ -61,15 +61,17 @@ const ResolutionRule& resolution_rule(const SceneSolver& solver) {
   return solver.thin_walls == ThinWalls::kOff ? kCubicCollocationRule : kCubicTestedRule;
 }
 
+// Of the smaller kind, all vertices tested.
 std::size_t operator_bytes(const SurfaceMesh& mesh) {
-  return 9 * mesh.vertex_count() * mesh.vertex_count() * sizeof(float);
+  const std::size_t n = mesh.vertex_count(), dense = 9 * n * n * sizeof(float);
+  return std::min(dense, FastOperator::estimated_bytes(mesh.triangle_count(), n, n));
 }
 
 // Said before the run starts, not at the first impact.
 void require_solvable(const Body& body, Real edge_length) {
   const std::size_t bytes = operator_bytes(*body.mesh), allowed = ElasticOptions{}.max_bytes;
   if (bytes <= allowed) return;
-  const Real edge = edge_length * std::pow(static_cast<Real>(bytes) / static_cast<Real>(allowed), 0.25) * 1.02;
+  const Real edge = edge_length * std::pow(static_cast<Real>(bytes) / static_cast<Real>(allowed), 0.5) * 1.02;
   throw InputError(fmt::format(
       "body \"{}\": {} triangles need {} MiB for the stress, more than the {} MiB allowed; raise edge_length "
       "from {:.3g} to {:.3g} m, or set breakable = false",
