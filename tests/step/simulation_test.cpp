@@ -138,12 +138,12 @@ TEST(Simulation, ASlowTouchBreaksNothingAndSaysWhy) {
 
 TEST(Simulation, ABodyTooLargeForItsOperatorIsRefusedWithTheRemedy) {
   std::string text = kBar;
-  text.replace(text.find("edge_length = 0.0125"), 20, "edge_length = 0.0003");
+  text.replace(text.find("edge_length = 0.0125"), 20, "edge_length = 0.00031");
   try {
     Simulation simulation(scene_of(text), {});
     ADD_FAILURE() << "accepted";
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("raise edge_length from 0.0003 to"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("raise edge_length from 0.00031 to"), std::string::npos) << e.what();
   }
   Simulation rigid(scene_of(text + "breakable = false\n"), {});  // the remedy that keeps the mesh
 }
