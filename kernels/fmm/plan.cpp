@@ -68,46 +68,26 @@ struct Layout {
   std::size_t leaf_size = 0;
 };
 
-// Every `step`-th point along the Morton curve: a sample that fills boxes as evenly as the points do.
-Vec3Column sample(const Vec3Column& points, const std::vector<std::uint32_t>& order, std::size_t step) {
-  Vec3Column out;
-  for (std::size_t i = step / 2; i < order.size(); i += step) out.push_back(points[order[i]]);
-  return out;
-}
-
-// Leaf size and root by the cost model. Of many points a sample stands for all, its boxes as full in proportion.
+// Leaf size and root by the cost model. Small leaves take longest to count and are passed over once the cost rises.
 Layout choose_layout(const Points& p, const PlanOptions& o, const CostModel& model, const ListOptions& lists) {
-  constexpr std::size_t kMany = 60000, kStep = 4;
-  std::vector<std::size_t> sizes{40, 64, 96, 144, 208, 304};
-  if (o.scheme == Scheme::kRbfSphere) sizes.insert(sizes.end(), {448, 640, 960});  // dear translations
-  const SortedPoints sorted(p.sources, p.targets);
-  const std::size_t most = std::max(p.sources.size(), p.targets.size()), step = most > kMany ? kStep : 1;
-  Vec3Column sources, targets;
-  if (step > 1) {
-    sources = sample(p.sources, sorted.source_order, step);
-    targets = sorted.same ? sources : sample(p.targets, sorted.target_order, step);
-  }
-  ListOptions in_sample = lists;
-  in_sample.multipole_from /= step, in_sample.local_from /= step, in_sample.direct_below /= step * step;
   Layout best;
-  best.leaf_size = o.leaf_size;
-  Real best_stretch = 1;
   double least = std::numeric_limits<double>::infinity();
+  const std::size_t most = std::max(p.sources.size(), p.targets.size());
+  std::vector<std::size_t> sizes{304, 208, 144, 96, 64, 40};
+  if (o.scheme == Scheme::kRbfSphere) sizes.insert(sizes.begin(), {960, 640, 448});  // dear translations
+  if (o.leaf_size > 0) sizes = {o.leaf_size};
   for (const Real stretch : {1.0, 1.2, 1.5}) {
-    if (o.leaf_size > 0 || (stretch > 1 && most < 2000)) break;
-    const SortedPoints few(step > 1 ? sources : p.sources, step > 1 ? targets : p.targets, stretch);
+    if (stretch > 1 && (o.leaf_size > 0 || most < 2000)) break;
+    const SortedPoints sorted(p.sources, p.targets, stretch);
+    double lowest = std::numeric_limits<double>::infinity();
     for (const std::size_t size : sizes) {
-      const Tree tree(few, TreeOptions{size / step});
-      ListCounts counts = count_interactions(tree, in_sample);
-      const double n = static_cast<double>(step);
-      counts.direct_pairs *= n * n, counts.multipole_points *= n, counts.local_points *= n;
-      const double c = cost(model, tree, counts);
-      if (c < least) least = c, best_stretch = stretch, best.leaf_size = size;
+      auto tree = std::make_unique<Tree>(sorted, TreeOptions{size});
+      const double c = cost(model, *tree, count_interactions(*tree, lists));
+      if (c > 1.1 * lowest) break;
+      lowest = std::min(lowest, c);
+      if (c < least) least = c, best.tree = std::move(tree), best.leaf_size = size;
     }
   }
-  const TreeOptions options{best.leaf_size};
-  best.tree = best_stretch > 1 ? std::make_unique<Tree>(SortedPoints(p.sources, p.targets, best_stretch), options)
-                               : std::make_unique<Tree>(sorted, options);
   return best;
 }
 
