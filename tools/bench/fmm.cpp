@@ -1,5 +1,7 @@
 #include "tools/bench/fmm.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -42,6 +44,7 @@ double median(std::vector<double> v) {
 }
 
 void reset_peak() {
+  malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5";
 }
 double peak_megabytes() {
