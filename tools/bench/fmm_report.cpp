@@ -113,7 +113,7 @@ void threads(const FmmOptions& o, Json& report) {
 }
 
 // The smallest N from which on the expansions win, both at their best of many runs.
-void crossover(const FmmOptions& o, Json& report) {
+void crossover(Json& report) {
   std::printf("\nCrossover with the direct sum, Kelvin on a sphere, tolerance 1e-4, one thread (ms; best leaf size)\n");
   std::printf("%8s %-7s %10s %10s %8s %10s\n", "points", "number", "direct", "expansions", "leaf", "automatic");
   const ThreadLimit limit(1);
@@ -131,33 +131,32 @@ void crossover(const FmmOptions& o, Json& report) {
         return 1e3 * least;
       };
       const double direct = best([&] { return problem.direct_seconds(precision, n); });
-      double expansions = 1e300, automatic = 0;
+      double expansions = std::numeric_limits<double>::infinity(), automatic = 0;  // ms
       std::size_t leaf = 0;
       bool direct_chosen = false;
       for (const std::size_t size : {0, 48, 80, 128, 200, 320}) {
         const Plan plan = problem.plan({.precision = precision, .leaf = size}, std::size_t{1} << 32);
         const double s = best([&] { return apply_seconds(plan, problem, 1); });
-        if (size == 0)
-          automatic = s, direct_chosen = plan.statistics().direct;
-        else if (plan.statistics().far_pairs > 0 && s < expansions)
-          expansions = s, leaf = size;
+        if (size == 0) automatic = s, direct_chosen = plan.statistics().direct;
+        if (!plan.statistics().direct && plan.statistics().far_pairs > 0 && s < expansions)
+          expansions = s, leaf = plan.statistics().leaf_size;
       }
       if (expansions < direct && smallest == 0) smallest = n;
       if (expansions >= direct) smallest = 0;
       std::printf("%8zu %-7s %10.3f %10.3f %8zu %10.3f %s\n", n, precision, direct, expansions, leaf, automatic,
                   direct_chosen ? "(direct)" : "");
-      report["crossover_rows"].push_back({{"n", n},
-                                          {"precision", precision},
-                                          {"direct_s", 1e-3 * direct},
-                                          {"expansions_s", 1e-3 * expansions},
-                                          {"leaf_size", leaf},
-                                          {"automatic_s", 1e-3 * automatic},
-                                          {"automatic_direct", direct_chosen}});
+      report["crossover_rows"].push_back(
+          {{"n", n},
+           {"precision", precision},
+           {"direct_s", 1e-3 * direct},
+           {"expansions_s", std::isfinite(expansions) ? Json(1e-3 * expansions) : Json()},
+           {"leaf_size", leaf},
+           {"automatic_s", 1e-3 * automatic},
+           {"automatic_direct", direct_chosen}});
     }
     std::printf("%s: expansions win from %zu points on\n", precision, smallest);
     report["crossover"][precision] = smallest;
   }
-  (void)o;
 }
 
 void paper_table(const FmmOptions& o, Json& rows) {
@@ -205,7 +204,7 @@ void fmm_report(const FmmOptions& o, Json& report) {
   tolerances(o, report["tolerances"]);
   sizes(o, report["sizes"]);
   threads(o, report);
-  crossover(o, report);
+  crossover(report);
   paper_table(o, report["paper"]);
 }
 
