@@ -44,7 +44,7 @@ FastOperator::FastOperator(const Boundary& b, const Reconstruction& r, Real nu, 
   for (std::size_t i = 0; i < normals.size(); ++i) normals.set(i, b.panels[i / 3].normal);
   const LaneConstants c = lane_constants(nu);
   fmm::PlanOptions options;
-  options.tolerance = o.tolerance, options.arithmetic = o.arithmetic;
+  options.tolerance = o.tolerance, options.arithmetic = o.arithmetic, options.leaf_size = o.leaf_size;
   const Vec3Column sources = far_points(b), targets = testing.points();
   plan_ =
       std::make_unique<fmm::Plan>(fmm::PairSum::kElasticValue, fmm::PairConstants<double>{c.one, c.two, c.angle, 0, 0},

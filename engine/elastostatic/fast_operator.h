@@ -11,6 +11,7 @@ namespace sherd {
 struct FastOptions {
   Real tolerance = 0;  // of the far field; 0: far_tolerance() of the body
   fmm::Arithmetic arithmetic = fmm::Arithmetic::kMixed;
+  std::size_t leaf_size = 0;  // of its tree; 0: as the cost model says, which sums few points directly
 };
 
 // Bending of slender bodies divides errors of the operator by its small singular values, which fall with the square of

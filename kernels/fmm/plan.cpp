@@ -83,7 +83,7 @@ Layout choose_layout(const Points& p, const PlanOptions& o, const CostModel& mod
     for (const std::size_t size : sizes) {
       auto tree = std::make_unique<Tree>(sorted, TreeOptions{size});
       const double c = cost(model, *tree, count_interactions(*tree, lists));
-      if (c > 1.1 * lowest) break;
+      if (c > 1.02 * lowest) break;
       lowest = std::min(lowest, c);
       if (c < least) least = c, best.tree = std::move(tree), best.leaf_size = size;
     }

@@ -9,7 +9,7 @@ namespace sherd::fmm {
 namespace {
 
 // Small enough to share out, large enough for the matrix products of one offset.
-constexpr Tree::Index kLeastBoxes = 16, kMostBoxes = 192, kChunksPerLevel = 24;
+constexpr Tree::Index kLeastBoxes = 16, kMostBoxes = 384, kChunksPerLevel = 24;
 
 FarExchange exchange(const FarPair& p, Tree::Index target, const Translations& t) {
   const std::size_t at = static_cast<std::size_t>((p.offset[0] + 3) * 49 + (p.offset[1] + 3) * 7 + p.offset[2] + 3);
