@@ -19,11 +19,11 @@ struct Level {
 // twice those on surfaces.
 constexpr std::array<Level, 8> kLevels{{{1e-2, 4, 5, 2.6e-3},
                                         {1e-3, 4, 6, 2.8e-4},
-                                        {1e-4, 5, 6, 3e-5},
+                                        {1e-4, 5, 7, 2.6e-5},
                                         {1e-5, 6, 8, 2.7e-6},
                                         {1e-6, 8, 9, 2.4e-7},
                                         {1e-7, 9, 11, 1.9e-8},
-                                        {1e-8, 10, 12, 1.6e-9},
+                                        {1e-8, 11, 13, 2.2e-9},
                                         {1e-9, 11, 13, 2.4e-10}}};
 
 // Million pairs a second with AVX-512 in single precision (sherd-bench pairs); double runs at 0.43 of it.

@@ -12,6 +12,7 @@
 #include "kernels/core/parallel.h"
 #include "tools/bench/fmm.h"
 #include "tools/bench/pairs.h"
+#include "tools/bench/solve.h"
 #include "tools/bench/stress.h"
 
 namespace {
@@ -122,6 +123,25 @@ CLI::App* add_fmm(CLI::App& app, sherd::bench::FmmOptions& o) {
   return fmm;
 }
 
+struct SolveCommand {
+  sherd::bench::SolveBenchOptions options;
+  int threads = 0;
+};
+
+CLI::App* add_solve(CLI::App& app, SolveCommand& c) {
+  CLI::App* solve = app.add_subcommand("solve", "whole elastostatic solves against an exact solution, by size");
+  solve->add_option("--triangles", c.options.triangles, "about so many")->check(CLI::Range(100, 4000000));
+  solve->add_option("--operator", c.options.operators)->check(CLI::IsMember({"auto", "dense", "fast"}));
+  solve->add_option("--tolerance", c.options.tolerance, "of the linear solver")->capture_default_str();
+  solve->add_option("--gigabytes", c.options.gigabytes, "largest operator")->capture_default_str();
+  solve->add_option("--threads", c.threads, "0: all")->check(CLI::NonNegativeNumber);
+  solve->add_option("--json", c.options.json, "file for the numbers");
+  solve->footer(
+      "Several values of an option make several rows. A million triangles take 11 GB and some minutes.\nExamples:\n  "
+      "sherd-bench solve --triangles 5000 --operator dense fast\n  sherd-bench solve --triangles 20000 100000 1000000");
+  return solve;
+}
+
 int run_micro(const std::string& program, std::vector<std::string> rest) {
   std::string name = program;
   std::vector<char*> arguments{name.data()};
@@ -149,7 +169,13 @@ int main(int argc, char** argv) {
   CLI::App* pairs = add_pairs(app, pairs_options);
   sherd::bench::FmmOptions fmm_options;
   CLI::App* fmm = add_fmm(app, fmm_options);
+  SolveCommand solve_command;
+  CLI::App* solve = add_solve(app, solve_command);
   CLI11_PARSE(app, argc, argv);
+  if (*solve) {
+    const sherd::ThreadLimit limit(solve_command.threads);
+    return sherd::bench::run_solve(solve_command.options);
+  }
   if (*fmm) return sherd::bench::run_fmm(fmm_options);
   if (*pairs) return sherd::bench::run_pairs(pairs_options);
   return *stress ? run_stress(command) : run_micro(argv[0], micro->remaining());
