@@ -52,7 +52,9 @@ FastOperator::FastOperator(const Boundary& b, const Reconstruction& r, Real nu, 
   Vec3Column ones(r.node_count());
   for (double& v : ones.x) v = 1;
   std::vector<double> value(3 * targets.size());
-  plan_->apply(strengths(ones), value);
+  std::vector<double> strength(6 * sources.size());
+  strengths(ones, strength);
+  plan_->apply(strength, value);
   total_ = near_.total();
   for (std::size_t i = 0; i < total_.size(); ++i) total_[i] += value[i];
 }
@@ -71,9 +73,8 @@ std::string FastOperator::too_large(const Boundary& b, const Testing& testing, s
                      b.panels.size(), bytes >> 20, max_bytes >> 20);
 }
 
-std::vector<double> FastOperator::strengths(const Vec3Column& nodes) const {
+void FastOperator::strengths(const Vec3Column& nodes, std::span<double> out) const {
   const std::size_t n = 3 * boundary_.panels.size();
-  std::vector<double> out(6 * n);
   const LaneTables& table = lane_tables();
   parallel_for(boundary_.panels.size(), 256, [&](std::size_t t) {
     const PanelFrame& f = boundary_.panels[t];
@@ -92,16 +93,51 @@ std::vector<double> FastOperator::strengths(const Vec3Column& nodes) const {
       }
     }
   });
-  return out;
 }
 
 void FastOperator::apply(std::span<const Real> x, std::span<Real> y) const {
-  const std::size_t n = boundary_.mesh.vertex_count(), m = total_.size(), first_gauss = testing_.collocated().size();
-  Vec3Column u(n), nodes;
-  for (std::size_t v = 0; v < n; ++v) u.set(v, {x[3 * v], x[3 * v + 1], x[3 * v + 2]});
-  reconstruction_.apply(u, nodes);
-  std::vector<double> far(3 * m);
-  plan_->apply(strengths(nodes), far);
+  apply_sets(x, 1, y);
+}
+
+void FastOperator::apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const {
+  constexpr std::size_t kSets = 8;
+  const std::size_t n = size();
+  std::vector<Real> in, out;
+  for (std::size_t first = 0; first < count; first += kSets) {
+    const std::size_t sets = std::min(kSets, count - first);
+    in.resize(sets * n), out.resize(sets * n);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t s = 0; s < sets; ++s) in[s * n + i] = x[i * count + first + s];
+    apply_sets(in, sets, out);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t s = 0; s < sets; ++s) y[i * count + first + s] = out[s * n + i];
+  }
+}
+
+void FastOperator::apply_sets(std::span<const Real> x, std::size_t sets, std::span<Real> y) const {
+  const std::size_t n = boundary_.mesh.vertex_count(), m = total_.size(), sources = 3 * boundary_.panels.size();
+  std::vector<Vec3Column> u(sets, Vec3Column(n)), nodes(sets);
+  std::vector<double> strength(sets * 6 * sources), far(sets * 3 * m);
+  for (std::size_t s = 0; s < sets; ++s) {
+    const std::span<const Real> in = x.subspan(s * size(), size());
+    for (std::size_t v = 0; v < n; ++v) u[s].set(v, {in[3 * v], in[3 * v + 1], in[3 * v + 2]});
+    reconstruction_.apply(u[s], nodes[s]);
+    strengths(nodes[s], std::span(strength).subspan(s * 6 * sources, 6 * sources));
+  }
+  plan_->apply(strength, far, sets);
+  for (std::size_t s = 0; s < sets; ++s) {
+    const std::span<const double> values = std::span<const double>(far).subspan(s * 3 * m, 3 * m);
+    const Vec3Column rows = testing_.apply(without_own(u[s], nodes[s], values));
+    const std::span<Real> out = y.subspan(s * size(), size());
+    for (std::size_t v = 0; v < n; ++v)
+      for (int k = 0; k < 3; ++k) out[3 * v + static_cast<std::size_t>(k)] = rows[v][k];
+    near_.add(x.subspan(s * size(), size()), out);
+  }
+}
+
+// The far field at every point less u(x) D[1](x).
+Vec3Column FastOperator::without_own(const Vec3Column& u, const Vec3Column& nodes, std::span<const double> far) const {
+  const std::size_t m = total_.size(), first_gauss = testing_.collocated().size();
   Vec3Column value(m);
   parallel_for(m, 2048, [&](std::size_t i) {
     Vec3 own;
@@ -114,10 +150,7 @@ void FastOperator::apply(std::span<const Real> x, std::span<Real> y) const {
     }
     value.set(i, Vec3{far[i], far[m + i], far[2 * m + i]} - own * total_[i]);
   });
-  const Vec3Column rows = testing_.apply(value);
-  for (std::size_t v = 0; v < n; ++v)
-    for (int k = 0; k < 3; ++k) y[3 * v + static_cast<std::size_t>(k)] = rows[v][k];
-  near_.add(x, y);
+  return value;
 }
 
 Mat3 FastOperator::diagonal_block(std::size_t p) const {

@@ -26,6 +26,8 @@ class FastOperator final : public LinearOperator {
                const FastOptions& options);
   std::size_t size() const override { return 3 * boundary_.mesh.vertex_count(); }
   void apply(std::span<const Real> x, std::span<Real> y) const override;
+  // Eight vectors share the far field's translations.
+  void apply_block(std::span<const Real> x, std::size_t count, std::span<Real> y) const override;
   Mat3 diagonal_block(std::size_t p) const override;
 
   // Estimates, for so many triangles, vertices and, of these, tested ones (not collocated): memory, and why an operator
@@ -38,7 +40,9 @@ class FastOperator final : public LinearOperator {
 
  private:
   // Strengths f and w of the point sources, six columns, for values at the nodes.
-  std::vector<double> strengths(const Vec3Column& nodes) const;
+  void strengths(const Vec3Column& nodes, std::span<double> out) const;
+  Vec3Column without_own(const Vec3Column& u, const Vec3Column& nodes, std::span<const double> far) const;
+  void apply_sets(std::span<const Real> x, std::size_t sets, std::span<Real> y) const;  // vector after vector
 
   const Boundary& boundary_;
   const Reconstruction& reconstruction_;

@@ -74,37 +74,46 @@ Evaluator<Far, Near>::Evaluator(const Problem& problem, const Tree& tree, const 
 
 template <class Far, class Near>
 typename Evaluator<Far, Near>::State Evaluator<Far, Near>::start(std::span<const double> strengths,
-                                                                 std::span<double> out, double factor) const {
+                                                                 std::span<double> out, std::size_t sets,
+                                                                 double factor) const {
   const PairShape shape = pair_shape(problem_.sum);
   const std::size_t own = first_normal(problem_.sum), n = sources_.size();
-  State s;
-  s.out = out;
-  std::vector<double> partial((n + kGrain - 1) / kGrain, 0);
   const auto root_factor = [&](std::size_t k) { return is_dipole(problem_.sum, k) ? 1 / tree_.size : 1.0; };
-  parallel_for_chunks(n, kGrain, [&](std::size_t begin, std::size_t end) {
-    double largest = 0;
-    for (std::size_t k = 0; k < own; ++k)
-      for (std::size_t i = begin; i < end; ++i)
-        largest = std::max(largest, std::abs(strengths[k * n + i] * root_factor(k)));
-    partial[begin / kGrain] = largest;
-  });
-  const double unit = binary_scale(partial.empty() ? 0 : *std::max_element(partial.begin(), partial.end()));
-  s.scale = factor * unit;
-  s.strengths = Columns<Near>(own, n);
-  parallel_for_chunks(n, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = 0; k < own; ++k) {
-      const double f = root_factor(k) / unit;
-      for (std::size_t i = begin; i < end; ++i)
-        s.strengths.column(k)[i] = static_cast<Near>(strengths[k * n + tree_.source_order[i]] * f);
-    }
-  });
-  s.near = Columns<Near>(shape.outputs, schedule_.padded_size);
-  s.far = Columns<Far>(shape.outputs, schedule_.padded_size);
-  for (const Operators<Far>& o : operators_) {
-    s.multipole.emplace_back(tree_.box_count() * o.columns * o.rank, Far(0));
-    s.local.emplace_back(tree_.box_count() * o.columns * o.rank, Far(0));
+  State s;
+  s.sets = sets, s.out = out;
+  s.strengths = Columns<Near>(sets * own, n);
+  for (std::size_t set = 0; set < sets; ++set) {
+    const std::span<const double> given = strengths.subspan(set * own * n, own * n);
+    std::vector<double> partial((n + kGrain - 1) / kGrain, 0);
+    parallel_for_chunks(n, kGrain, [&](std::size_t begin, std::size_t end) {
+      double largest = 0;
+      for (std::size_t k = 0; k < own; ++k)
+        for (std::size_t i = begin; i < end; ++i)
+          largest = std::max(largest, std::abs(given[k * n + i] * root_factor(k)));
+      partial[begin / kGrain] = largest;
+    });
+    const double unit = binary_scale(partial.empty() ? 0 : *std::max_element(partial.begin(), partial.end()));
+    s.scale.push_back(factor * unit);
+    parallel_for_chunks(n, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = 0; k < own; ++k) {
+        const double f = root_factor(k) / unit;
+        for (std::size_t i = begin; i < end; ++i)
+          s.strengths.column(set * own + k)[i] = static_cast<Near>(given[k * n + tree_.source_order[i]] * f);
+      }
+    });
+  }
+  s.near = Columns<Near>(sets * shape.outputs, schedule_.padded_size);
+  s.far = Columns<Far>(sets * shape.outputs, schedule_.padded_size);
+  for (std::size_t f = 0; f < operators_.size(); ++f) {
+    s.multipole.emplace_back(tree_.box_count() * width(f, s), Far(0));
+    s.local.emplace_back(tree_.box_count() * width(f, s), Far(0));
   }
   return s;
+}
+
+template <class Far, class Near>
+std::size_t Evaluator<Far, Near>::width(std::size_t field, const State& state) const {
+  return state.sets * operators_[field].columns * operators_[field].rank;
 }
 
 template <class Far, class Near>
@@ -148,12 +157,10 @@ void Evaluator<Far, Near>::direct(const Chunk& chunk, State& state) const {
     const std::size_t at = schedule_.padded[b];
     PairTargets<Near> targets{};
     targets.count = (tree_.targets[b].size() + kPairPad - 1) / kPairPad * kPairPad;
-    Near* out[kMaxOutputs];
     for (std::size_t k = 0; k < 3; ++k) {
       targets.x[k] = targets_.column(k) + at;
       targets.normal[k] = shape.target_normals ? target_normals_.column(k) + at : nullptr;
     }
-    for (std::size_t k = 0; k < shape.outputs; ++k) out[k] = state.near.column(k) + at;
     for (const Tree::Index a : lists_.near[b]) {
       const Vec3 d = between(b, a);
       const Near shift[3] = {static_cast<Near>(d.x), static_cast<Near>(d.y), static_cast<Near>(d.z)};
@@ -161,10 +168,14 @@ void Evaluator<Far, Near>::direct(const Chunk& chunk, State& state) const {
       PairSources<Near> sources{};
       sources.count = r.size();
       for (std::size_t k = 0; k < 3; ++k) sources.x[k] = sources_.column(k) + r.begin;
-      for (std::size_t k = 0, own = 0; k < shape.strengths; ++k)
-        sources.strength[k] = k >= normal && k < normal + 3 ? source_normals_.column(k - normal) + r.begin
-                                                            : state.strengths.column(own++) + r.begin;
-      sum(sources, targets, shift, constants, out);
+      for (std::size_t set = 0; set < state.sets; ++set) {
+        for (std::size_t k = 0; k < shape.strengths; ++k)
+          sources.strength[k] =
+              (k < normal ? state.strengths.column(set * normal + k) : source_normals_.column(k - normal)) + r.begin;
+        Near* out[kMaxOutputs];
+        for (std::size_t k = 0; k < shape.outputs; ++k) out[k] = state.near.column(set * shape.outputs + k) + at;
+        sum(sources, targets, shift, constants, out);
+      }
     }
   }
 }
@@ -176,8 +187,8 @@ struct Evaluator<Far, Near>::BoxSources {
 };
 
 template <class Far, class Near>
-void Evaluator<Far, Near>::gather_sources(std::size_t field, Tree::Index leaf, Tree::Index box, const State& state,
-                                          BoxSources& out) const {
+void Evaluator<Far, Near>::gather_sources(std::size_t field, Tree::Index leaf, Tree::Index box, std::size_t set,
+                                          const State& state, BoxSources& out) const {
   const FarField& f = problem_.fields[field];
   const std::size_t n = tree_.sources[leaf].size(), first = tree_.sources[leaf].begin;
   const std::size_t strengths = pair_shape(f.up).strengths, normal = first_normal(problem_.sum);
@@ -191,9 +202,9 @@ void Evaluator<Far, Near>::gather_sources(std::size_t field, Tree::Index leaf, T
     out.sources.x[k] = x;
   }
   for (const FarField::Term& t : f.terms) {
-    const bool is_normal = t.from >= normal && t.from < normal + 3;
     const Near* from =
-        is_normal ? source_normals_.column(t.from - normal) + first : state.strengths.column(t.from) + first;
+        (t.from < normal ? state.strengths.column(set * normal + t.from) : source_normals_.column(t.from - normal)) +
+        first;
     const Near factor = static_cast<Near>(t.factor) * (t.dipole ? unit : Near(1));
     Far* to = out.data.data() + (3 + t.to) * n;
     for (std::size_t i = 0; i < n; ++i) to[i] += static_cast<Far>(from[i] * factor);
@@ -203,12 +214,25 @@ void Evaluator<Far, Near>::gather_sources(std::size_t field, Tree::Index leaf, T
 }
 
 template <class Far, class Near>
-void Evaluator<Far, Near>::leaf_multipoles(std::size_t field, const Chunk& chunk, State& state) const {
+void Evaluator<Far, Near>::add_potential(std::size_t field, Tree::Index leaf, Tree::Index box,
+                                         const Columns<Far>& surface, const State& state, BoxSources& work,
+                                         Far* potential) const {
   const FarField& f = problem_.fields[field];
+  const std::size_t components = operators_[field].dim * operators_[field].columns;
+  const PairTargets<Far> check{surface.size(), {surface.column(0), surface.column(1), surface.column(2)}, {}};
+  for (std::size_t set = 0; set < state.sets; ++set) {
+    gather_sources(field, leaf, box, set, state, work);
+    Far* out[kMaxOutputs];
+    for (std::size_t k = 0; k < components; ++k) out[k] = potential + (set * components + k) * surface.size();
+    constexpr Far kNone[3] = {0, 0, 0};
+    pair_function<Far>(f.up)(work.sources, check, kNone, cast<Far>(f.up_constants), out);
+  }
+}
+
+template <class Far, class Near>
+void Evaluator<Far, Near>::leaf_multipoles(std::size_t field, const Chunk& chunk, State& state) const {
   const Operators<Far>& o = operators_[field];
-  const PairFunction<Far> sum = pair_function<Far>(f.up);
-  const PairConstants<Far> constants = cast<Far>(f.up_constants);
-  const std::size_t stride = o.outer.size(), components = o.dim * o.columns;
+  const std::size_t stride = o.dim * o.outer.size(), w = width(field, state), columns = w / o.rank;
   std::vector<Tree::Index> leaves;
   for (Tree::Index b = chunk.begin; b < chunk.end; ++b)
     if (tree_.leaf(b) && tree_.sources[b].size() > 0) leaves.push_back(b);
@@ -218,44 +242,38 @@ void Evaluator<Far, Near>::leaf_multipoles(std::size_t field, const Chunk& chunk
   Matrix<Far> multipole;
   for (std::size_t first = 0; first < leaves.size(); first += kBatch) {
     const std::size_t n = std::min(kBatch, leaves.size() - first);
-    potential.assign(n * components * stride, Far(0));
-    for (std::size_t l = 0; l < n; ++l) {
-      gather_sources(field, leaves[first + l], leaves[first + l], state, sources);
-      const PairTargets<Far> check{stride, {o.outer.column(0), o.outer.column(1), o.outer.column(2)}, {}};
-      Far* out[kMaxOutputs];
-      for (std::size_t k = 0; k < components; ++k) out[k] = potential.data() + (l * components + k) * stride;
-      constexpr Far kNone[3] = {0, 0, 0};
-      sum(sources.sources, check, kNone, constants, out);
-    }
-    const auto columns = static_cast<Index>(n * o.columns);
-    multipole.noalias() = o.up * ConstMap<Far>(potential.data(), static_cast<Index>(o.dim * stride), columns);
+    potential.assign(n * columns * stride, Far(0));
     for (std::size_t l = 0; l < n; ++l)
-      std::copy_n(multipole.data() + l * o.columns * o.rank, o.columns * o.rank,
-                  state.multipole[field].data() + leaves[first + l] * o.columns * o.rank);
+      add_potential(field, leaves[first + l], leaves[first + l], o.outer, state, sources,
+                    potential.data() + l * columns * stride);
+    multipole.noalias() =
+        o.up * ConstMap<Far>(potential.data(), static_cast<Index>(stride), static_cast<Index>(n * columns));
+    for (std::size_t l = 0; l < n; ++l)
+      std::copy_n(multipole.data() + l * w, w, state.multipole[field].data() + leaves[first + l] * w);
   }
 }
 
 template <class Far, class Near>
 void Evaluator<Far, Near>::merge_multipoles(std::size_t field, const Chunk& chunk, State& state) const {
   const Operators<Far>& o = operators_[field];
-  const std::size_t width = o.columns * o.rank;
+  const std::size_t w = width(field, state), columns = w / o.rank;
   std::vector<Far>& m = state.multipole[field];
   std::vector<Tree::Index> parents;
   Matrix<Far> children, moved;
   for (unsigned octant = 0; octant < 8; ++octant) {
     parents.clear();
-    children.resize(static_cast<Index>(o.rank), static_cast<Index>((chunk.end - chunk.begin) * o.columns));
+    children.resize(static_cast<Index>(o.rank), static_cast<Index>((chunk.end - chunk.begin) * columns));
     for (Tree::Index b = chunk.begin; b < chunk.end; ++b)
       for (Tree::Index c = tree_.children[b].begin; c < tree_.children[b].end; ++c) {
         const auto& a = tree_.anchor[c];
         if (((a[0] & 1) | (a[1] & 1) << 1 | (a[2] & 1) << 2) != octant || tree_.sources[c].size() == 0) continue;
-        std::copy_n(m.data() + c * width, width, children.data() + parents.size() * width);
+        std::copy_n(m.data() + c * w, w, children.data() + parents.size() * w);
         parents.push_back(b);
       }
     if (parents.empty()) continue;
-    moved.noalias() = o.merge[octant] * children.leftCols(static_cast<Index>(parents.size() * o.columns));
+    moved.noalias() = o.merge[octant] * children.leftCols(static_cast<Index>(parents.size() * columns));
     for (std::size_t i = 0; i < parents.size(); ++i)
-      for (std::size_t k = 0; k < width; ++k) m[parents[i] * width + k] += moved.data()[i * width + k];
+      for (std::size_t k = 0; k < w; ++k) m[parents[i] * w + k] += moved.data()[i * w + k];
   }
 }
 
@@ -263,26 +281,26 @@ template <class Far, class Near>
 void Evaluator<Far, Near>::across(std::size_t field, std::size_t chunk, State& state) const {
   const Operators<Far>& o = operators_[field];
   const std::span<const FarExchange> exchanges = schedule_.exchanges(chunk);
-  const std::size_t width = o.columns * o.rank, batch = std::max<std::size_t>(1, 192 / o.columns);
-  std::vector<Far> in(batch * width), out(batch * width);
+  const std::size_t w = width(field, state), sets = w / o.rank, batch = std::max<std::size_t>(1, 192 / sets);
+  std::vector<Far> in(batch * w), out(batch * w);
   const Far* multipole = state.multipole[field].data();
   Far* local = state.local[field].data();
   for (std::size_t first = 0; first < exchanges.size();) {
     std::size_t last = first + 1;
     while (last < exchanges.size() && last - first < batch && exchanges[last].matrix == exchanges[first].matrix) ++last;
     for (std::size_t i = first; i < last; ++i) {
-      const Far *from = multipole + exchanges[i].source * width, *sign = o.flip[exchanges[i].flips].data();
-      Far* to = in.data() + (i - first) * width;
-      for (std::size_t c = 0; c < o.columns; ++c)
+      const Far *from = multipole + exchanges[i].source * w, *sign = o.flip[exchanges[i].flips].data();
+      Far* to = in.data() + (i - first) * w;
+      for (std::size_t c = 0; c < sets; ++c)
         for (std::size_t k = 0; k < o.rank; ++k) to[c * o.rank + k] = from[c * o.rank + k] * sign[k];
     }
-    const auto columns = static_cast<Index>((last - first) * o.columns), rank = static_cast<Index>(o.rank);
+    const auto columns = static_cast<Index>((last - first) * sets), rank = static_cast<Index>(o.rank);
     Map<Far>(out.data(), rank, columns).noalias() =
         o.across[exchanges[first].matrix] * ConstMap<Far>(in.data(), rank, columns);
     for (std::size_t i = first; i < last; ++i) {
-      const Far *from = out.data() + (i - first) * width, *sign = o.flip[exchanges[i].flips].data();
-      Far* to = local + exchanges[i].target * width;
-      for (std::size_t c = 0; c < o.columns; ++c)
+      const Far *from = out.data() + (i - first) * w, *sign = o.flip[exchanges[i].flips].data();
+      Far* to = local + exchanges[i].target * w;
+      for (std::size_t c = 0; c < sets; ++c)
         for (std::size_t k = 0; k < o.rank; ++k) to[c * o.rank + k] += from[c * o.rank + k] * sign[k];
     }
     first = last;
@@ -291,27 +309,17 @@ void Evaluator<Far, Near>::across(std::size_t field, std::size_t chunk, State& s
 
 template <class Far, class Near>
 void Evaluator<Far, Near>::leaf_locals(std::size_t field, const Chunk& chunk, State& state) const {
-  const FarField& f = problem_.fields[field];
   const Operators<Far>& o = operators_[field];
-  const PairFunction<Far> sum = pair_function<Far>(f.up);
-  const PairConstants<Far> constants = cast<Far>(f.up_constants);
-  const std::size_t stride = o.inner.size(), components = o.dim * o.columns;
+  const std::size_t stride = o.dim * o.inner.size(), w = width(field, state), columns = w / o.rank;
   std::vector<Far> potential;
   BoxSources sources;
   for (Tree::Index b = chunk.begin; b < chunk.end; ++b) {
     if (lists_.local[b].empty()) continue;
-    potential.assign(components * stride, Far(0));
-    for (const Tree::Index a : lists_.local[b]) {
-      gather_sources(field, a, b, state, sources);
-      const PairTargets<Far> check{stride, {o.inner.column(0), o.inner.column(1), o.inner.column(2)}, {}};
-      Far* out[kMaxOutputs];
-      for (std::size_t k = 0; k < components; ++k) out[k] = potential.data() + k * stride;
-      constexpr Far kNone[3] = {0, 0, 0};
-      sum(sources.sources, check, kNone, constants, out);
-    }
-    const auto columns = static_cast<Index>(o.columns);
-    Map<Far>(state.local[field].data() + b * o.columns * o.rank, static_cast<Index>(o.rank), columns).noalias() +=
-        o.gather * ConstMap<Far>(potential.data(), static_cast<Index>(o.dim * stride), columns);
+    potential.assign(columns * stride, Far(0));
+    for (const Tree::Index a : lists_.local[b]) add_potential(field, a, b, o.inner, state, sources, potential.data());
+    const auto count = static_cast<Index>(columns);
+    Map<Far>(state.local[field].data() + b * w, static_cast<Index>(o.rank), count).noalias() +=
+        o.gather * ConstMap<Far>(potential.data(), static_cast<Index>(stride), count);
   }
 }
 
@@ -319,23 +327,23 @@ template <class Far, class Near>
 void Evaluator<Far, Near>::split_locals(std::size_t field, const Chunk& chunk, State& state) const {
   if (chunk.begin == 0) return;  // the root
   const Operators<Far>& o = operators_[field];
-  const std::size_t width = o.columns * o.rank;
+  const std::size_t w = width(field, state), columns = w / o.rank;
   std::vector<Far>& local = state.local[field];
   std::vector<Tree::Index> boxes;
   Matrix<Far> parents, moved;
   for (unsigned octant = 0; octant < 8; ++octant) {
     boxes.clear();
-    parents.resize(static_cast<Index>(o.rank), static_cast<Index>((chunk.end - chunk.begin) * o.columns));
+    parents.resize(static_cast<Index>(o.rank), static_cast<Index>((chunk.end - chunk.begin) * columns));
     for (Tree::Index b = chunk.begin; b < chunk.end; ++b) {
       const auto& a = tree_.anchor[b];
       if (((a[0] & 1) | (a[1] & 1) << 1 | (a[2] & 1) << 2) != octant || tree_.targets[b].size() == 0) continue;
-      std::copy_n(local.data() + tree_.parent[b] * width, width, parents.data() + boxes.size() * width);
+      std::copy_n(local.data() + tree_.parent[b] * w, w, parents.data() + boxes.size() * w);
       boxes.push_back(b);
     }
     if (boxes.empty()) continue;
-    moved.noalias() = o.split[octant] * parents.leftCols(static_cast<Index>(boxes.size() * o.columns));
+    moved.noalias() = o.split[octant] * parents.leftCols(static_cast<Index>(boxes.size() * columns));
     for (std::size_t i = 0; i < boxes.size(); ++i)
-      for (std::size_t k = 0; k < width; ++k) local[boxes[i] * width + k] += moved.data()[i * width + k];
+      for (std::size_t k = 0; k < w; ++k) local[boxes[i] * w + k] += moved.data()[i * w + k];
   }
 }
 
@@ -364,22 +372,27 @@ void Evaluator<Far, Near>::add_surface(std::size_t field, Tree::Index leaf, Tree
   PairSources<Far> sources{};
   sources.count = count;
   for (std::size_t k = 0; k < 3; ++k) sources.x[k] = surface.column(k);
-  for (std::size_t k = 0; k < shape.strengths; ++k) sources.strength[k] = density + k * surface.size();
+  const std::size_t components = operators_[field].dim * operators_[field].columns;
   Far* out[kMaxOutputs];
   for (std::size_t k = 0; k < shape.outputs; ++k) out[k] = work.data() + (6 + k) * n;
-  constexpr Far kNone[3] = {0, 0, 0};
-  pair_function<Far>(f.down)(sources, targets, kNone, cast<Far>(f.down_constants), out);
-  for (std::size_t k = 0; k < shape.outputs; ++k) {
-    const Far scale = std::ldexp(Far(1), tree_.level[box] * output_power(problem_.sum, k));
-    Far* far = state.far.column(k) + at;
-    for (std::size_t i = 0; i < n; ++i) far[i] += out[k][i] * scale;
+  for (std::size_t set = 0; set < state.sets; ++set) {
+    if (set > 0) std::fill(work.begin() + static_cast<std::ptrdiff_t>(6 * n), work.end(), Far(0));
+    for (std::size_t k = 0; k < shape.strengths; ++k)
+      sources.strength[k] = density + (set * components + k) * surface.size();
+    constexpr Far kNone[3] = {0, 0, 0};
+    pair_function<Far>(f.down)(sources, targets, kNone, cast<Far>(f.down_constants), out);
+    for (std::size_t k = 0; k < shape.outputs; ++k) {
+      const Far scale = std::ldexp(Far(1), tree_.level[box] * output_power(problem_.sum, k));
+      Far* far = state.far.column(set * shape.outputs + k) + at;
+      for (std::size_t i = 0; i < n; ++i) far[i] += out[k][i] * scale;
+    }
   }
 }
 
 template <class Far, class Near>
 void Evaluator<Far, Near>::evaluate_locals(std::size_t field, const Chunk& chunk, State& state) const {
   const Operators<Far>& o = operators_[field];
-  const std::size_t width = o.columns * o.rank, stride = o.outer.size();
+  const std::size_t w = width(field, state), columns = w / o.rank, stride = o.outer.size();
   std::vector<Tree::Index> leaves;
   for (Tree::Index b = chunk.begin; b < chunk.end; ++b)
     if (tree_.leaf(b) && tree_.targets[b].size() > 0) leaves.push_back(b);
@@ -388,26 +401,26 @@ void Evaluator<Far, Near>::evaluate_locals(std::size_t field, const Chunk& chunk
   std::vector<Far> work;
   for (std::size_t first = 0; first < leaves.size(); first += kBatch) {
     const std::size_t n = std::min(kBatch, leaves.size() - first);
-    local.resize(static_cast<Index>(o.rank), static_cast<Index>(n * o.columns));
+    local.resize(static_cast<Index>(o.rank), static_cast<Index>(n * columns));
     for (std::size_t l = 0; l < n; ++l)
-      std::copy_n(state.local[field].data() + leaves[first + l] * width, width, local.data() + l * width);
+      std::copy_n(state.local[field].data() + leaves[first + l] * w, w, local.data() + l * w);
     density.noalias() = o.down * local;
     for (std::size_t l = 0; l < n; ++l)
       add_surface(field, leaves[first + l], leaves[first + l], o.outer, o.outer_size,
-                  density.data() + l * o.columns * o.dim * stride, state, work);
+                  density.data() + l * columns * o.dim * stride, state, work);
   }
 }
 
 template <class Far, class Near>
 void Evaluator<Far, Near>::evaluate_multipoles(std::size_t field, const Chunk& chunk, State& state) const {
   const Operators<Far>& o = operators_[field];
-  const std::size_t width = o.columns * o.rank;
+  const std::size_t w = width(field, state), columns = w / o.rank;
   Matrix<Far> density;
   std::vector<Far> work;
   for (Tree::Index b = chunk.begin; b < chunk.end; ++b)
     for (const Tree::Index a : lists_.multipole[b]) {
-      density.noalias() = o.spread * ConstMap<Far>(state.multipole[field].data() + a * width,
-                                                   static_cast<Index>(o.rank), static_cast<Index>(o.columns));
+      density.noalias() = o.spread * ConstMap<Far>(state.multipole[field].data() + a * w, static_cast<Index>(o.rank),
+                                                   static_cast<Index>(columns));
       add_surface(field, b, a, o.inner, o.inner_size, density.data(), state, work);
     }
 }
@@ -415,8 +428,8 @@ void Evaluator<Far, Near>::evaluate_multipoles(std::size_t field, const Chunk& c
 template <class Far, class Near>
 void Evaluator<Far, Near>::finish(const Chunk& chunk, State& state) const {
   const std::size_t outputs = pair_shape(problem_.sum).outputs, n = tree_.target_order.size();
-  for (std::size_t k = 0; k < outputs; ++k) {
-    const double scale = state.scale / std::pow(tree_.size, output_power(problem_.sum, k));
+  for (std::size_t k = 0; k < state.sets * outputs; ++k) {
+    const double scale = state.scale[k / outputs] / std::pow(tree_.size, output_power(problem_.sum, k % outputs));
     for (Tree::Index b = chunk.begin; b < chunk.end; ++b) {
       if (!tree_.leaf(b)) continue;
       const Near* near = state.near.column(k) + schedule_.padded[b];

@@ -58,18 +58,19 @@ class Evaluator {
 
   // Everything that one application changes.
   struct State {
-    std::span<double> out;                           // columns in the sum's order, as the targets were given
-    double scale = 1;                                // of the outputs
-    Columns<Near> strengths;                         // sorted, root = 1
-    Columns<Near> near;                              // outputs, padded by leaf
-    Columns<Far> far;                                // outputs, padded by leaf
-    std::vector<std::vector<Far>> multipole, local;  // per field: [box][column][rank]
+    std::size_t sets = 1;                            // of strengths
+    std::span<double> out;                           // per set columns in the sum's order, as the targets were given
+    std::vector<double> scale;                       // of the outputs, per set
+    Columns<Near> strengths;                         // per set; sorted, root = 1
+    Columns<Near> near;                              // outputs per set, padded by leaf
+    Columns<Far> far;                                // likewise
+    std::vector<std::vector<Far>> multipole, local;  // per field: [box][set][column][rank]
   };
-  // strengths: columns in the sum's order without the normal's, finite. `factor` multiplies the outputs.
-  State start(std::span<const double> strengths, std::span<double> out, double factor) const;
+  // strengths: per set columns in the sum's order without the normal's, finite. `factor` multiplies the outputs.
+  State start(std::span<const double> strengths, std::span<double> out, std::size_t sets, double factor) const;
   void run(const Schedule::Task& task, State& state) const;
   std::size_t bytes() const;        // of the plan's arrays
-  std::size_t state_bytes() const;  // of one application's
+  std::size_t state_bytes() const;  // of one application's to one set
 
  private:
   struct BoxSources;
@@ -82,8 +83,15 @@ class Evaluator {
   void evaluate_locals(std::size_t field, const Chunk& chunk, State& state) const;
   void evaluate_multipoles(std::size_t field, const Chunk& chunk, State& state) const;
   void finish(const Chunk& chunk, State& state) const;
+  // Numbers a box's expansion has, all sets.
+  std::size_t width(std::size_t field, const State& state) const;
   // The sources of a leaf in the units of a box, with the strengths that field.up takes.
-  void gather_sources(std::size_t field, Tree::Index leaf, Tree::Index box, const State& state, BoxSources& out) const;
+  void gather_sources(std::size_t field, Tree::Index leaf, Tree::Index box, std::size_t set, const State& state,
+                      BoxSources& out) const;
+  // Adds what the sources of a leaf give on a surface about a box: all sets, each components() * surface.size()
+  // numbers.
+  void add_potential(std::size_t field, Tree::Index leaf, Tree::Index box, const Columns<Far>& surface,
+                     const State& state, BoxSources& work, Far* potential) const;
   // Adds what densities on a surface about `box` give at the targets of `leaf`.
   void add_surface(std::size_t field, Tree::Index leaf, Tree::Index box, const Columns<Far>& surface, std::size_t count,
                    const Far* density, State& state, std::vector<Far>& work) const;

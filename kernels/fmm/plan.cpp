@@ -200,9 +200,9 @@ struct Plan::Impl {
   }
 
   template <class Record>
-  void apply(std::span<const double> strengths, std::span<double> out, const Record& record) const {
+  void apply(std::span<const double> strengths, std::span<double> out, std::size_t sets, const Record& record) const {
     const std::size_t own = first_normal(problem.sum), outputs = pair_shape(problem.sum).outputs;
-    if (strengths.size() != own * sources || out.size() != outputs * targets)
+    if (strengths.size() != sets * own * sources || out.size() != sets * outputs * targets)
       throw InputError(fmt::format("fast multipole method: {} strengths for {} x {} and {} outputs for {} x {}",
                                    strengths.size(), own, sources, out.size(), outputs, targets));
     for (std::size_t i = 0; i < strengths.size(); ++i)
@@ -212,7 +212,7 @@ struct Plan::Impl {
     std::visit(
         [&](const auto& e) {
           if constexpr (!std::is_same_v<std::decay_t<decltype(e)>, std::monostate>) {
-            auto state = e.start(strengths, out, factor);
+            auto state = e.start(strengths, out, sets, factor);
             schedule->graph().run([&](TaskGraph::Task t) { record(t, [&] { e.run(schedule->task(t), state); }); });
           }
         },
@@ -239,15 +239,15 @@ const PlanStatistics& Plan::statistics() const {
   return impl_->statistics;
 }
 
-void Plan::apply(std::span<const double> strengths, std::span<double> out) const {
-  impl_->apply(strengths, out, [](TaskGraph::Task, const auto& body) { body(); });
+void Plan::apply(std::span<const double> strengths, std::span<double> out, std::size_t sets) const {
+  impl_->apply(strengths, out, sets, [](TaskGraph::Task, const auto& body) { body(); });
 }
 
 std::vector<TaskRecord> Plan::apply_traced(std::span<const double> strengths, std::span<double> out) const {
   const Schedule& schedule = *impl_->schedule;
   std::vector<TaskRecord> records(schedule.graph().size());
   const auto start = Clock::now();
-  impl_->apply(strengths, out, [&](TaskGraph::Task t, const auto& body) {
+  impl_->apply(strengths, out, 1, [&](TaskGraph::Task t, const auto& body) {
     const double begin = seconds_since(start);
     body();
     const Schedule::Task& task = schedule.task(t);

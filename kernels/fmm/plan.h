@@ -67,7 +67,8 @@ class Plan {
   // strengths: columns of as many numbers as there are sources; out: columns of as many as there are targets,
   // overwritten. Thread safe; the same bits for any number of threads. Throws InputError where sizes do not fit or a
   // strength is not finite.
-  void apply(std::span<const double> strengths, std::span<double> out) const;
+  // Several sets of strengths at once, one after another in both arrays: translations serve all of them together.
+  void apply(std::span<const double> strengths, std::span<double> out, std::size_t sets = 1) const;
   // The same, and when each task ran; numbered as in tasks().
   std::vector<TaskRecord> apply_traced(std::span<const double> strengths, std::span<double> out) const;
   const TaskGraph& tasks() const;

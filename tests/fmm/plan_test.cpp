@@ -122,6 +122,35 @@ TEST(Plan, IsLinearInTheStrengths) {
   }
 }
 
+TEST(Plan, SetsTogetherGiveWhatEachGivesAlone) {
+  // Rounding only, as above. Graded points, so that every kind of work has sets.
+  Vec3Column points = sphere_points(2500, 12);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (i % 2 == 0) points.set(i, Vec3{1, 0, 0} + (points[i] - Vec3{1, 0, 0}) * 1e-3);
+  for (const PairSum sum : {PairSum::kKelvinStress, PairSum::kElasticValue, PairSum::kDipoleGradient}) {
+    PlanCase c = plan_case(sum, points, points, 40);
+    const Plan plan = c.plan();
+    std::vector<double> all, expected;
+    for (const double scale : {1.0, 1e-6, 1e5}) {
+      c.strengths = test::random_numbers(c.strengths.size(), static_cast<std::uint64_t>(20 + std::log10(scale)));
+      for (double& s : c.strengths) s *= scale;
+      all.insert(all.end(), c.strengths.begin(), c.strengths.end());
+      const auto alone = c.apply(plan);
+      expected.insert(expected.end(), alone.begin(), alone.end());
+    }
+    std::vector<double> together(expected.size());
+    plan.apply(all, together, 3);
+    const std::size_t n = expected.size() / 3;
+    for (std::size_t set = 0; set < 3; ++set) {
+      const auto part = [&](const std::vector<double>& v) {
+        return std::vector<double>(v.begin() + static_cast<std::ptrdiff_t>(set * n),
+                                   v.begin() + static_cast<std::ptrdiff_t>((set + 1) * n));
+      };
+      EXPECT_LT(relative_error(part(together), part(expected)), 1e-11) << set;
+    }
+  }
+}
+
 // Outputs of a sum whose lengths, strengths and constants are multiplied.
 std::vector<double> scaled(PlanCase c, double length, double strength, double constant) {
   for (Vec3Column* p : {&c.sources, &c.targets})
