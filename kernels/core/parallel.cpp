@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 
+#include "kernels/core/thread_sanitizer.h"
+
 namespace sherd {
 namespace {
 
@@ -64,9 +66,14 @@ void parallel_for_chunks(std::size_t n, std::size_t grain, const std::function<v
     run(0);
     return;
   }
+  char handed_out, ended;
+  happens_before(&handed_out);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks, 1), [&](const tbb::blocked_range<std::size_t>& r) {
+    happens_after(&handed_out);
     for (std::size_t c = r.begin(); c != r.end(); ++c) run(c);
+    happens_before(&ended);
   });
+  happens_after(&ended);
 }
 
 void parallel_sort(std::vector<KeyedIndex>& items) {

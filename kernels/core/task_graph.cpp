@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "kernels/core/error.h"
+#include "kernels/core/thread_sanitizer.h"
 
 namespace sherd {
 
@@ -34,14 +35,20 @@ struct Run {
   std::atomic<std::size_t> done{0};
   tbb::task_group group;
 
+  // The call that oneTBB makes reads its own copy of `this` and `task` before the order can be declared.
   void start(TaskGraph::Task task) {
-    group.run([this, task] {
-      body(task);
-      done.fetch_add(1, std::memory_order_relaxed);
-      // The decrement that reaches zero sees what all predecessors wrote.
-      for (const TaskGraph::Task t : next[task])
-        if (waits[t].fetch_sub(1, std::memory_order_acq_rel) == 1) start(t);
-    });
+    happens_before(this);
+    group.run([this, task]() SHERD_UNCHECKED_BY_THREAD_SANITIZER { execute(task); });
+  }
+
+  void execute(TaskGraph::Task task) {
+    happens_after(this);
+    body(task);
+    done.fetch_add(1, std::memory_order_relaxed);
+    // The decrement that reaches zero sees what all predecessors wrote.
+    for (const TaskGraph::Task t : next[task])
+      if (waits[t].fetch_sub(1, std::memory_order_acq_rel) == 1) start(t);
+    happens_before(&group);
   }
 };
 
@@ -53,6 +60,7 @@ void TaskGraph::run(const std::function<void(Task)>& body) const {
   for (std::size_t t = 0; t < waits_.size(); ++t)
     if (waits_[t] == 0) run.start(static_cast<Task>(t));
   run.group.wait();
+  happens_after(&run.group);
   if (run.done != waits_.size()) throw InternalError("tasks wait for each other in a circle");
 }
 
