@@ -253,28 +253,35 @@ void Evaluator<Far, Near>::leaf_multipoles(std::size_t field, const Chunk& chunk
   }
 }
 
+// The coefficients of each pair's second box += matrix * those of its first.
+template <class Far, class Near>
+void Evaluator<Far, Near>::translate(const typename Operators<Far>::Matrix& matrix,
+                                     std::span<const std::pair<Tree::Index, Tree::Index>> pairs, std::size_t w,
+                                     std::vector<Far>& coefficients) const {
+  if (pairs.empty()) return;
+  const auto rank = matrix.cols(), columns = static_cast<Index>(pairs.size() * w) / rank;
+  Matrix<Far> in(rank, columns);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    std::copy_n(coefficients.data() + pairs[i].first * w, w, in.data() + i * w);
+  const Matrix<Far> out = matrix * in;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    for (std::size_t k = 0; k < w; ++k) coefficients[pairs[i].second * w + k] += out.data()[i * w + k];
+}
+
+template <class Far, class Near>
+unsigned Evaluator<Far, Near>::octant(Tree::Index box) const {
+  const auto& a = tree_.anchor[box];
+  return (a[0] & 1) | (a[1] & 1) << 1 | (a[2] & 1) << 2;
+}
+
 template <class Far, class Near>
 void Evaluator<Far, Near>::merge_multipoles(std::size_t field, const Chunk& chunk, State& state) const {
-  const Operators<Far>& o = operators_[field];
-  const std::size_t w = width(field, state), columns = w / o.rank;
-  std::vector<Far>& m = state.multipole[field];
-  std::vector<Tree::Index> parents;
-  Matrix<Far> children, moved;
-  for (unsigned octant = 0; octant < 8; ++octant) {
-    parents.clear();
-    children.resize(static_cast<Index>(o.rank), static_cast<Index>((chunk.end - chunk.begin) * columns));
-    for (Tree::Index b = chunk.begin; b < chunk.end; ++b)
-      for (Tree::Index c = tree_.children[b].begin; c < tree_.children[b].end; ++c) {
-        const auto& a = tree_.anchor[c];
-        if (((a[0] & 1) | (a[1] & 1) << 1 | (a[2] & 1) << 2) != octant || tree_.sources[c].size() == 0) continue;
-        std::copy_n(m.data() + c * w, w, children.data() + parents.size() * w);
-        parents.push_back(b);
-      }
-    if (parents.empty()) continue;
-    moved.noalias() = o.merge[octant] * children.leftCols(static_cast<Index>(parents.size() * columns));
-    for (std::size_t i = 0; i < parents.size(); ++i)
-      for (std::size_t k = 0; k < w; ++k) m[parents[i] * w + k] += moved.data()[i * w + k];
-  }
+  std::array<std::vector<std::pair<Tree::Index, Tree::Index>>, 8> pairs;
+  for (Tree::Index b = chunk.begin; b < chunk.end; ++b)
+    for (Tree::Index c = tree_.children[b].begin; c < tree_.children[b].end; ++c)
+      if (tree_.sources[c].size() > 0) pairs[octant(c)].push_back({c, b});
+  for (std::size_t o = 0; o < 8; ++o)
+    translate(operators_[field].merge[o], pairs[o], width(field, state), state.multipole[field]);
 }
 
 template <class Far, class Near>
@@ -326,25 +333,11 @@ void Evaluator<Far, Near>::leaf_locals(std::size_t field, const Chunk& chunk, St
 template <class Far, class Near>
 void Evaluator<Far, Near>::split_locals(std::size_t field, const Chunk& chunk, State& state) const {
   if (chunk.begin == 0) return;  // the root
-  const Operators<Far>& o = operators_[field];
-  const std::size_t w = width(field, state), columns = w / o.rank;
-  std::vector<Far>& local = state.local[field];
-  std::vector<Tree::Index> boxes;
-  Matrix<Far> parents, moved;
-  for (unsigned octant = 0; octant < 8; ++octant) {
-    boxes.clear();
-    parents.resize(static_cast<Index>(o.rank), static_cast<Index>((chunk.end - chunk.begin) * columns));
-    for (Tree::Index b = chunk.begin; b < chunk.end; ++b) {
-      const auto& a = tree_.anchor[b];
-      if (((a[0] & 1) | (a[1] & 1) << 1 | (a[2] & 1) << 2) != octant || tree_.targets[b].size() == 0) continue;
-      std::copy_n(local.data() + tree_.parent[b] * w, w, parents.data() + boxes.size() * w);
-      boxes.push_back(b);
-    }
-    if (boxes.empty()) continue;
-    moved.noalias() = o.split[octant] * parents.leftCols(static_cast<Index>(boxes.size() * columns));
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      for (std::size_t k = 0; k < w; ++k) local[boxes[i] * w + k] += moved.data()[i * w + k];
-  }
+  std::array<std::vector<std::pair<Tree::Index, Tree::Index>>, 8> pairs;
+  for (Tree::Index b = chunk.begin; b < chunk.end; ++b)
+    if (tree_.targets[b].size() > 0) pairs[octant(b)].push_back({tree_.parent[b], b});
+  for (std::size_t o = 0; o < 8; ++o)
+    translate(operators_[field].split[o], pairs[o], width(field, state), state.local[field]);
 }
 
 template <class Far, class Near>

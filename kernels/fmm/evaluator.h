@@ -77,6 +77,10 @@ class Evaluator {
   void direct(const Chunk& chunk, State& state) const;
   void leaf_multipoles(std::size_t field, const Chunk& chunk, State& state) const;
   void merge_multipoles(std::size_t field, const Chunk& chunk, State& state) const;
+  void translate(const typename Operators<Far>::Matrix& matrix,
+                 std::span<const std::pair<Tree::Index, Tree::Index>> pairs, std::size_t width,
+                 std::vector<Far>& coefficients) const;
+  unsigned octant(Tree::Index box) const;  // in its parent
   void across(std::size_t field, std::size_t chunk, State& state) const;
   void leaf_locals(std::size_t field, const Chunk& chunk, State& state) const;
   void split_locals(std::size_t field, const Chunk& chunk, State& state) const;
