@@ -17,16 +17,7 @@ Real bulk(const Boundary& b) {
   return 20 * signed_volume(b.mesh) / (b.area * bounding_box(b.mesh).diagonal());
 }
 
-}  // namespace
-
-bool is_bulky(const Boundary& b) {
-  return bulk(b) >= 1;
-}
-
-Real far_tolerance(const Boundary& b) {
-  return std::clamp(1e-5 * bulk(b) * bulk(b), 1e-8, 1e-5);
-}
-
+// The points that stand for the panels far away: three a panel, panel by panel.
 Vec3Column far_points(const Boundary& b) {
   Vec3Column out(3 * b.panels.size());
   for (std::size_t t = 0; t < b.panels.size(); ++t)
@@ -35,6 +26,16 @@ Vec3Column far_points(const Boundary& b) {
       out.set(3 * t + q, v[0] * kGauss3[q].a + v[1] * kGauss3[q].b + v[2] * kGauss3[q].c);
     }
   return out;
+}
+
+}  // namespace
+
+bool is_bulky(const Boundary& b) {
+  return bulk(b) >= 1;
+}
+
+Real far_tolerance(const Boundary& b) {
+  return std::clamp(1e-5 * bulk(b) * bulk(b), 1e-8, 1e-5);
 }
 
 FastOperator::FastOperator(const Boundary& b, const Reconstruction& r, Real nu, const Testing& testing,

@@ -17,6 +17,7 @@ struct FastOptions {
 // Bending of slender bodies divides errors of the operator by its small singular values, which fall with the square of
 // thickness (2 volume / area) over length (diagonal): 1e-5 for bulky bodies, down to 1e-8.
 Real far_tolerance(const Boundary& boundary);
+// Whether that is 1e-5: thickness at least a tenth of the length.
 bool is_bulky(const Boundary& boundary);
 
 class FastOperator final : public LinearOperator {
@@ -51,8 +52,5 @@ class FastOperator final : public LinearOperator {
   std::unique_ptr<fmm::Plan> plan_;
   std::vector<Real> total_;  // double layer of 1 at each point, as the two parts see it
 };
-
-// The points that stand for the panels far away: three a panel, panel by panel.
-Vec3Column far_points(const Boundary& boundary);
 
 }  // namespace sherd

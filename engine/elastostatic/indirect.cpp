@@ -162,12 +162,7 @@ IndirectSolution IndirectBody::solve(const Load& load, const ParticularSolution&
   Real rigid2 = 0;
   for (const Real c : modes_.coefficients(b)) rigid2 += c * c;
   s.incompatibility = scale > 0 ? std::sqrt(rigid2) / scale : 0;
-  const auto jacobi = [&](std::span<const Real> r, std::span<Real> z) {
-    for (std::size_t p = 0; p < n; ++p) {
-      const Vec3 v = inverse_blocks_[p] * Vec3{r[3 * p], r[3 * p + 1], r[3 * p + 2]};
-      z[3 * p] = v.x, z[3 * p + 1] = v.y, z[3 * p + 2] = v.z;
-    }
-  };
+  const auto jacobi = [&](std::span<const Real> r, std::span<Real> z) { apply_blocks(inverse_blocks_, r, z); };
   s.krylov = options_.method == KrylovMethod::kGmres ? gmres(*completed_, jacobi, b, x, options_.krylov)
                                                      : bicgstab(*completed_, jacobi, b, x, options_.krylov);
   s.density.resize(n);

@@ -24,4 +24,11 @@ std::vector<Mat3> inverse_diagonal_blocks(const LinearOperator& a) {
   return out;
 }
 
+void apply_blocks(const std::vector<Mat3>& blocks, std::span<const Real> r, std::span<Real> z) {
+  for (std::size_t p = 0; p < blocks.size(); ++p) {
+    const Vec3 v = blocks[p] * Vec3{r[3 * p], r[3 * p + 1], r[3 * p + 2]};
+    z[3 * p] = v.x, z[3 * p + 1] = v.y, z[3 * p + 2] = v.z;
+  }
+}
+
 }  // namespace sherd

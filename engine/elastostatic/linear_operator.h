@@ -25,5 +25,7 @@ class LinearOperator {
 
 // Their inverses, the identity where a block is nearly singular.
 std::vector<Mat3> inverse_diagonal_blocks(const LinearOperator& a);
+// Block-Jacobi: z = the blocks times r, point by point.
+void apply_blocks(const std::vector<Mat3>& blocks, std::span<const Real> r, std::span<Real> z);
 
 }  // namespace sherd

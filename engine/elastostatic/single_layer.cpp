@@ -12,7 +12,8 @@
 namespace sherd {
 namespace {
 
-// Pairs of targets and far sources from which on the fast multipole method is sooner done than a second of direct sums.
+// Pairs of targets and far sources from which on the fast multipole method is used: about a second of direct sums on
+// one core.
 constexpr double kFastPairs = 2e9;
 constexpr Real kFastTolerance = 1e-6;
 

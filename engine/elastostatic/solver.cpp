@@ -11,32 +11,40 @@
 namespace sherd {
 namespace {
 
+// Edge length over wall thickness of each face.
+std::vector<Real> edge_over_wall(const SurfaceMesh& mesh) {
+  const std::vector<Real> thickness = wall_thickness(mesh).face;
+  std::vector<Real> out = local_edge_length(mesh);
+  for (std::size_t t = 0; t < out.size(); ++t) out[t] /= thickness[t];
+  return out;
+}
+
 // Petrov-Galerkin on walls that the mesh does not resolve for collocation.
-std::vector<VertexTest> vertex_tests(const SurfaceMesh& mesh, const ElasticOptions& o) {
+std::vector<VertexTest> vertex_tests(const SurfaceMesh& mesh, const std::vector<Real>& ratio, const ElasticOptions& o) {
   const bool linear = o.reconstruction.element == Element::kLinear;
   std::vector<VertexTest> out(mesh.vertex_count(),
                               o.testing == TestingRule::kGalerkin ? VertexTest::kGalerkin : VertexTest::kCollocation);
   if (o.testing != TestingRule::kAuto || linear) return out;
-  const std::vector<Real> thickness = wall_thickness(mesh).face, edge = local_edge_length(mesh);
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    if (edge[t] <= o.thin_ratio * thickness[t]) continue;
+    if (ratio[t] <= o.thin_ratio) continue;
     for (const std::uint32_t v : mesh.triangles[t]) out[v] = VertexTest::kGalerkin;
   }
   return out;
 }
+
+constexpr Real kSingleReaches = 1e-5;  // single precision: as a far field's tolerance and as a residual
 
 // Without a coarse space, the fast operator's bodies converge in this many iterations or are thin.
 constexpr int kPlainIterations = 120;
 constexpr std::size_t kFastCoarseDimension = 120;
 
 // Walls so thin that the coarse space would need hundreds of iterations: over half a percent of the surface.
-bool has_slender_walls(const SurfaceMesh& mesh) {
-  const std::vector<Real> thickness = wall_thickness(mesh).face, edge = local_edge_length(mesh);
+bool has_slender_walls(const SurfaceMesh& mesh, const std::vector<Real>& ratio) {
   Real slender = 0, area = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const Real a = norm(mesh.area_normal2(t));
     area += a;
-    if (edge[t] > 2.5 * thickness[t]) slender += a;
+    if (ratio[t] > 2.5) slender += a;
   }
   return slender > 0.005 * area;
 }
@@ -47,11 +55,12 @@ ElasticBody::ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const
     : material_(material),
       options_(options),
       boundary_(mesh, options.quadrature),
+      edge_over_wall_(edge_over_wall(boundary_.mesh)),
       reconstruction_(boundary_.mesh, material.nu, options.reconstruction),
-      testing_(boundary_, reconstruction_, vertex_tests(boundary_.mesh, options)),
+      testing_(boundary_, reconstruction_, vertex_tests(boundary_.mesh, edge_over_wall_, options)),
       modes_(boundary_.mesh.vertices, boundary_.vertex_area),
       cavities_(boundary_, reconstruction_, modes_) {
-  slender_ = has_slender_walls(boundary_.mesh);
+  slender_ = has_slender_walls(boundary_.mesh, edge_over_wall_);
   const std::size_t n = 3 * mesh.vertex_count();
   const bool dense = options.kind == OperatorKind::kDense ||
                      (options.kind == OperatorKind::kAuto &&
@@ -82,7 +91,8 @@ void ElasticBody::build_fast() {
   if (o.tolerance <= 0) o.tolerance = far_tolerance(boundary_);
   // Rounding must stay below the residual asked for, or the iteration stalls: single precision has 1e-6 of the
   // displacement, which slender bodies make large against the right-hand side.
-  if (o.tolerance < 0.9e-5 || options_.krylov.tolerance < 1e-5) o.arithmetic = fmm::Arithmetic::kDouble;
+  if (o.tolerance < kSingleReaches || options_.krylov.tolerance < kSingleReaches)
+    o.arithmetic = fmm::Arithmetic::kDouble;
   auto fast = std::make_unique<FastOperator>(boundary_, reconstruction_, material_.nu, testing_, o);
   operator_bytes_ = fast->bytes();
   operator_ = std::move(fast);
@@ -135,7 +145,7 @@ KrylovResult ElasticBody::iterate(std::span<const Real> b, std::span<Real> x, bo
   if (!ready(factored_) && !ready(deflation_)) {
     KrylovOptions few = options_.krylov;
     few.max_iterations = std::min(few.max_iterations, kPlainIterations);
-    if (attempt([&](auto r, auto z) { apply_blocks(r, z); }, few) ||
+    if (attempt([&](auto r, auto z) { apply_blocks(inverse_blocks_, r, z); }, few) ||
         few.max_iterations == options_.krylov.max_iterations)
       return total;
     const std::lock_guard lock(factoring_);
@@ -147,13 +157,6 @@ KrylovResult ElasticBody::iterate(std::span<const Real> b, std::span<Real> x, bo
   factored = true;
   attempt([&](auto r, auto z) { factored_->apply(r, z); }, options_.krylov);
   return total;
-}
-
-void ElasticBody::apply_blocks(std::span<const Real> r, std::span<Real> z) const {
-  for (std::size_t p = 0; p < inverse_blocks_.size(); ++p) {
-    const Vec3 v = inverse_blocks_[p] * Vec3{r[3 * p], r[3 * p + 1], r[3 * p + 2]};
-    z[3 * p] = v.x, z[3 * p + 1] = v.y, z[3 * p + 2] = v.z;
-  }
 }
 
 // Mean stress = integral of x t^T over the boundary / volume, for tractions in balance (divergence theorem).

@@ -21,7 +21,8 @@ enum class TestingRule { kCollocation, kAuto, kGalerkin };
 
 // kAuto: triangular factors where they cost little (up to 1500 unknowns) or where elements are more than 2.5 times as
 // long as the wall is thick (up to 12,000), a coarse space otherwise, and the factors after all where that does not
-// converge.
+// converge. The fast operator has no factors: block-Jacobi first, a coarse space for slender walls and where that does
+// not converge.
 enum class Preconditioning { kAuto, kDeflation, kFactored };
 
 // A dense matrix, or the fast multipole method (fast_operator.h). kAuto: whichever is sooner ready, as measured.
@@ -72,7 +73,7 @@ class ElasticBody {
   const Elastic& material() const { return material_; }
   const ElasticOptions& options() const { return options_; }
   const LinearOperator& system() const { return *operator_; }  // without completion
-  std::size_t bytes() const;                                   // of the operator and its factors
+  std::size_t bytes() const;                                   // of the operator, its factors and coarse space
   const Reconstruction& reconstruction() const { return reconstruction_; }
   const Testing& testing() const { return testing_; }
 
@@ -85,12 +86,12 @@ class ElasticBody {
   // Makes the factors when they are not there yet; false when they do not fit max_bytes or a pivot vanished.
   bool factor() const;
   KrylovResult iterate(std::span<const Real> b, std::span<Real> x, bool& factored) const;
-  void apply_blocks(std::span<const Real> r, std::span<Real> z) const;
   Real strained_size(std::span<const Real> homogeneous, const ParticularSolution& particular) const;
 
   Elastic material_;
   ElasticOptions options_;
   Boundary boundary_;
+  std::vector<Real> edge_over_wall_;  // of a face
   Reconstruction reconstruction_;
   Testing testing_;
   RigidModes modes_;

@@ -189,8 +189,7 @@ template <class T>
 void sum_block(const DirectSum& d, const Units& u, const Sources<T>& sources, std::size_t begin, std::size_t end,
                std::span<double> out) {
   const PairShape shape = pair_shape(d.sum);
-  const std::size_t count = end - begin, all = out.size() / shape.outputs,
-                    padded = (count + kPairPad - 1) / kPairPad * kPairPad;
+  const std::size_t count = end - begin, all = out.size() / shape.outputs, padded = padded_count(count);
   const PairFunction<T> function = pair_function<T>(d.sum, d.instructions);
   const PairConstants<T> constants{static_cast<T>(d.constants.a), static_cast<T>(d.constants.b),
                                    static_cast<T>(d.constants.c), static_cast<T>(d.constants.lambda),

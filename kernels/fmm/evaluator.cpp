@@ -59,7 +59,7 @@ Evaluator<Far, Near>::Evaluator(const Problem& problem, const Tree& tree, const 
       }
     }
     const Tree::Range t = tree.targets[b];
-    for (std::size_t i = 0; i < (t.size() + kPairPad - 1) / kPairPad * kPairPad; ++i) {
+    for (std::size_t i = 0; i < padded_count(t.size()); ++i) {
       const std::size_t at = schedule.padded[b] + i;
       const std::uint32_t given = tree.target_order[std::min<std::size_t>(t.begin + i, t.end - 1)];
       const Vec3 x = (targets[given] - centre) / tree.size;
@@ -156,7 +156,7 @@ void Evaluator<Far, Near>::direct(const Chunk& chunk, State& state) const {
     if (!tree_.leaf(b) || tree_.targets[b].size() == 0) continue;
     const std::size_t at = schedule_.padded[b];
     PairTargets<Near> targets{};
-    targets.count = (tree_.targets[b].size() + kPairPad - 1) / kPairPad * kPairPad;
+    targets.count = padded_count(tree_.targets[b].size());
     for (std::size_t k = 0; k < 3; ++k) {
       targets.x[k] = targets_.column(k) + at;
       targets.normal[k] = shape.target_normals ? target_normals_.column(k) + at : nullptr;
@@ -345,7 +345,7 @@ void Evaluator<Far, Near>::add_surface(std::size_t field, Tree::Index leaf, Tree
                                        const Columns<Far>& surface, std::size_t count, const Far* density, State& state,
                                        std::vector<Far>& work) const {
   const FarField& f = problem_.fields[field];
-  const std::size_t n = (tree_.targets[leaf].size() + kPairPad - 1) / kPairPad * kPairPad, at = schedule_.padded[leaf];
+  const std::size_t n = padded_count(tree_.targets[leaf].size()), at = schedule_.padded[leaf];
   const PairShape shape = pair_shape(f.down);
   const Near unit = std::ldexp(Near(1), tree_.level[box]);
   const Vec3 d = between(leaf, box);
@@ -432,22 +432,6 @@ void Evaluator<Far, Near>::finish(const Chunk& chunk, State& state) const {
             (static_cast<double>(near[i]) + static_cast<double>(far[i])) * scale;
     }
   }
-}
-
-template <class Far, class Near>
-std::size_t Evaluator<Far, Near>::bytes() const {
-  std::size_t sum = sources_.bytes() + source_normals_.bytes() + targets_.bytes() + target_normals_.bytes();
-  for (const Operators<Far>& o : operators_) sum += o.bytes();
-  return sum;
-}
-
-template <class Far, class Near>
-std::size_t Evaluator<Far, Near>::state_bytes() const {
-  const PairShape shape = pair_shape(problem_.sum);
-  std::size_t sum = shape.strengths * sources_.size() * sizeof(Near) +
-                    shape.outputs * schedule_.padded_size * (sizeof(Near) + sizeof(Far));
-  for (const Operators<Far>& o : operators_) sum += 2 * tree_.box_count() * o.columns * o.rank * sizeof(Far);
-  return sum;
 }
 
 template class Evaluator<float, float>;

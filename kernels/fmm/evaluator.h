@@ -31,7 +31,6 @@ template <class T>
 struct Operators {
   using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
   Operators(const FarField& field);
-  std::size_t bytes() const;
 
   std::size_t rank, columns, dim;
   std::size_t inner_size, outer_size;  // points without padding
@@ -69,8 +68,6 @@ class Evaluator {
   // strengths: per set columns in the sum's order without the normal's, finite. `factor` multiplies the outputs.
   State start(std::span<const double> strengths, std::span<double> out, std::size_t sets, double factor) const;
   void run(const Schedule::Task& task, State& state) const;
-  std::size_t bytes() const;        // of the plan's arrays
-  std::size_t state_bytes() const;  // of one application's to one set
 
  private:
   struct BoxSources;

@@ -5,13 +5,9 @@
 namespace sherd::fmm {
 namespace {
 
-std::size_t padded(std::size_t n) {
-  return (n + kPairPad - 1) / kPairPad * kPairPad;
-}
-
 template <class T>
 Columns<T> surface(const std::vector<Vec3>& points) {
-  Columns<T> out(3, padded(points.size()));
+  Columns<T> out(3, padded_count(points.size()));
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < out.size(); ++i)
       out.column(k)[i] = static_cast<T>(points[std::min(i, points.size() - 1)][static_cast<int>(k)]);
@@ -21,7 +17,7 @@ Columns<T> surface(const std::vector<Vec3>& points) {
 // Columns of a matrix over a surface from point by point to component by component, padded.
 template <class T>
 typename Operators<T>::Matrix by_component(const Eigen::MatrixXd& m, std::size_t dim) {
-  const std::size_t points = static_cast<std::size_t>(m.cols()) / dim, stride = padded(points);
+  const std::size_t points = static_cast<std::size_t>(m.cols()) / dim, stride = padded_count(points);
   typename Operators<T>::Matrix out = Operators<T>::Matrix::Zero(m.rows(), static_cast<Eigen::Index>(dim * stride));
   for (std::size_t p = 0; p < points; ++p)
     for (std::size_t i = 0; i < dim; ++i)
@@ -47,14 +43,6 @@ Operators<T>::Operators(const FarField& field) : columns(field.columns) {
   for (const Eigen::MatrixXd& m : t->to_local) across.push_back(m.cast<T>());
   for (unsigned s = 0; s < 8; ++s)
     for (const std::uint8_t p : t->parity) flip[s].push_back(__builtin_popcount(s & p) % 2 ? T(-1) : T(1));
-}
-
-template <class T>
-std::size_t Operators<T>::bytes() const {
-  std::size_t numbers = static_cast<std::size_t>(2 * up.size() + 2 * spread.size());
-  for (const Matrix& m : merge) numbers += static_cast<std::size_t>(2 * m.size());
-  for (const Matrix& m : across) numbers += static_cast<std::size_t>(m.size());
-  return numbers * sizeof(T);
 }
 
 template struct Operators<float>;

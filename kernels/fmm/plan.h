@@ -65,9 +65,9 @@ class Plan {
   std::size_t strengths() const;
   std::size_t outputs() const;
   // strengths: columns of as many numbers as there are sources; out: columns of as many as there are targets,
-  // overwritten. Thread safe; the same bits for any number of threads. Throws InputError where sizes do not fit or a
-  // strength is not finite.
-  // Several sets of strengths at once, one after another in both arrays: translations serve all of them together.
+  // overwritten. Several sets of strengths stand one after another in both arrays: translations serve all together.
+  // Thread safe; the same bits for any number of threads. Throws InputError where sizes do not fit or a strength is not
+  // finite.
   void apply(std::span<const double> strengths, std::span<double> out, std::size_t sets = 1) const;
   // The same, and when each task ran; numbered as in tasks().
   std::vector<TaskRecord> apply_traced(std::span<const double> strengths, std::span<double> out) const;

@@ -70,8 +70,7 @@ Translations rbf_translations(const TranslationOptions& options) {
     for (int y = -3; y <= 3; ++y)
       for (int z = -3; z <= 3; ++z) {
         if (std::abs(x) < 2 && std::abs(y) < 2 && std::abs(z) < 2) continue;
-        t.offset[static_cast<std::size_t>((x + 3) * 49 + (y + 3) * 7 + z + 3)] = {
-            static_cast<std::uint16_t>(t.to_local.size()), 0};
+        t.offset[offset_index(x, y, z)] = {static_cast<std::uint16_t>(t.to_local.size()), 0};
         t.to_local.push_back(kernel_matrix(kernel, moved(t.inner, {Real(x), Real(y), Real(z)}), t.inner));
       }
   t.parity.assign(t.rank, 0);

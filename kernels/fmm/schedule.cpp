@@ -12,7 +12,7 @@ namespace {
 constexpr Tree::Index kLeastBoxes = 16, kMostBoxes = 384, kChunksPerLevel = 24;
 
 FarExchange exchange(const FarPair& p, Tree::Index target, const Translations& t) {
-  const std::size_t at = static_cast<std::size_t>((p.offset[0] + 3) * 49 + (p.offset[1] + 3) * 7 + p.offset[2] + 3);
+  const std::size_t at = offset_index(p.offset[0], p.offset[1], p.offset[2]);
   return {p.source, target, t.offset[at].matrix, t.offset[at].flips};
 }
 
@@ -52,7 +52,7 @@ Schedule::Schedule(const Tree& tree, const InteractionLists& lists, const Transl
   padded.assign(tree.box_count(), 0);
   for (Tree::Index b = 0; b < tree.box_count(); ++b) {
     padded[b] = padded_size;
-    if (tree.leaf(b)) padded_size += (tree.targets[b].size() + kPairPad - 1) / kPairPad * kPairPad;
+    if (tree.leaf(b)) padded_size += padded_count(tree.targets[b].size());
   }
   add_tasks(tree, lists);
 }
@@ -83,9 +83,8 @@ void Schedule::add_tasks(const Tree& tree, const InteractionLists& lists) {
     graph_.precede(across(c), down(c)), graph_.precede(direct(c), down(c));
     for (Tree::Index b = chunks_[c].begin; b < chunks_[c].end; ++b) {
       if (b > 0) wait(down(c), chunk_of[tree.parent[b]], down(chunk_of[tree.parent[b]]));
-      for (const Tree::Index s : lists.multipole[b])
-        if (seen[chunk_of[s]] != down(c) || chunk_of[s] == chunk_of[tree.parent[b]])
-          wait(down(c), chunk_of[s], up(chunk_of[s]));
+      // These lie deeper than the parent, so in other chunks.
+      for (const Tree::Index s : lists.multipole[b]) wait(down(c), chunk_of[s], up(chunk_of[s]));
     }
   }
 }

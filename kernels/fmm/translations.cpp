@@ -270,9 +270,8 @@ class Builder {
         for (int z = -3; z <= 3; ++z) {
           const int ax = std::abs(x), ay = std::abs(y), az = std::abs(z);
           if (ax < 2 && ay < 2 && az < 2) continue;
-          t.offset[static_cast<std::size_t>((x + 3) * 49 + (y + 3) * 7 + z + 3)] = {
-              made[static_cast<std::size_t>(16 * ax + 4 * ay + az)],
-              static_cast<std::uint8_t>((x < 0) | (y < 0) << 1 | (z < 0) << 2)};
+          t.offset[offset_index(x, y, z)] = {made[static_cast<std::size_t>(16 * ax + 4 * ay + az)],
+                                             static_cast<std::uint8_t>((x < 0) | (y < 0) << 1 | (z < 0) << 2)};
         }
   }
 

@@ -31,6 +31,11 @@ struct TranslationOptions {
   bool operator==(const TranslationOptions&) const = default;
 };
 
+// Of an offset with components -3 .. 3.
+constexpr std::size_t offset_index(int x, int y, int z) {
+  return static_cast<std::size_t>((x + 3) * 49 + (y + 3) * 7 + z + 3);
+}
+
 struct Translations {
   std::size_t dim = 1, rank = 0;
   std::vector<Vec3> inner, outer;  // surfaces around the box
@@ -47,7 +52,7 @@ struct Translations {
     std::uint16_t matrix = 0xFFFF;  // 0xFFFF: not a far pair
     std::uint8_t flips = 0;
   };
-  std::array<Offset, 343> offset;    // at (x + 3) * 49 + (y + 3) * 7 + z + 3
+  std::array<Offset, 343> offset;    // at offset_index()
   std::vector<std::uint8_t> parity;  // of a coefficient: bits of the axes it is odd in
 };
 

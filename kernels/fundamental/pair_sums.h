@@ -50,6 +50,9 @@ struct PairSources {
 
 // Arrays of `count` numbers each, count a multiple of kPairPad (fill up with any finite points).
 inline constexpr std::size_t kPairPad = 16;
+SHERD_HD constexpr std::size_t padded_count(std::size_t n) {
+  return (n + kPairPad - 1) / kPairPad * kPairPad;
+}
 template <class T>
 struct PairTargets {
   std::size_t count;
