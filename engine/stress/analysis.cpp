@@ -271,8 +271,9 @@ void Analysis::stress(const LocatedPoints& points, std::vector<Sym3>& out) {
   const StageTimer timer(impl_->report.seconds.evaluate);
   out.assign(points.size(), {});
   for (std::uint32_t s = 0; s < impl_->members.size(); ++s) {
-    std::vector<std::size_t> inside;
-    Vec3Column x;
+    std::vector<std::size_t> inside, on;
+    std::vector<std::uint32_t> face;
+    Vec3Column x, y;
     const StressField* field = impl_->members[s].solver ? impl_->members[s].solver->field() : nullptr;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (points.solid[i] != s) continue;
@@ -280,11 +281,14 @@ void Analysis::stress(const LocatedPoints& points, std::vector<Sym3>& out) {
       if (points.face[i] == kNone)
         inside.push_back(i), x.push_back(points.position[i]);
       else
-        out[i] = field->on_face(points.face[i], points.position[i]);
+        on.push_back(i), y.push_back(points.position[i]), face.push_back(points.face[i]);
     }
     std::vector<Sym3> sigma;
     if (!inside.empty()) field->evaluate(x, sigma);
     for (std::size_t k = 0; k < inside.size(); ++k) out[inside[k]] = sigma[k];
+    sigma.resize(on.size());
+    if (!on.empty()) field->on_faces(y, face, sigma);
+    for (std::size_t k = 0; k < on.size(); ++k) out[on[k]] = sigma[k];
   }
 }
 

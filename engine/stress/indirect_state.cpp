@@ -40,14 +40,18 @@ Sym3 IndirectState::total(const Vec3& x, std::uint32_t own) const {
   return kelvin::hooke(g, m) + field_.stress(x);
 }
 
-Sym3 IndirectState::on_face(std::uint32_t face, const Vec3& x) const {
-  return interpolate_corners(body_.boundary().panels[face], recovery_, corner_stress_, face, x);
+void IndirectState::on_faces(const Vec3Column& points, std::span<const std::uint32_t> face, std::span<Sym3> out) const {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    out[i] = interpolate_corners(body_.boundary().panels[face[i]], recovery_, corner_stress_, face[i], points[i]);
 }
 
 void IndirectState::evaluate(const Vec3Column& points, std::vector<Sym3>& out) const {
   out.resize(points.size());
   parallel_for(points.size(), 1, [&](std::size_t i) {
-    out[i] = blend_near_surface(*this, bvh_, body_.boundary(), points[i], [&](const Vec3& x) { return interior(x); });
+    const SurfaceBlend b = blend_near_surface(bvh_, body_.boundary(), points[i]);
+    out[i] = {};
+    if (b.inside > 0) out[i] += interior(b.below) * b.inside;
+    if (b.inside < 1) out[i] += on_face(b.face, b.on) * (1 - b.inside);
   });
 }
 

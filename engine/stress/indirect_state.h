@@ -19,7 +19,7 @@ class IndirectState final : public StressField {
   const std::vector<Sym3>& corner_stress() const override { return corner_stress_; }
   // Linear interpolation of the corner stresses: the limit below has logarithms at every edge, which cost up to ten
   // times the error there.
-  Sym3 on_face(std::uint32_t face, const Vec3& x) const override;
+  void on_faces(const Vec3Column& points, std::span<const std::uint32_t> face, std::span<Sym3> out) const override;
   // Blended like StressState::evaluate(): interior() within a quarter edge of the surface meets the logarithms too.
   void evaluate(const Vec3Column& points, std::vector<Sym3>& out) const override;
 

@@ -24,21 +24,17 @@ Sym3 interpolate_corners(const PanelFrame& f, const SurfaceRecovery& recovery, c
   return s * (1 / total);
 }
 
-Sym3 blend_near_surface(const StressField& field, const TriangleBvh& bvh, const Boundary& boundary, const Vec3& x,
-                        const std::function<Sym3(const Vec3&)>& interior) {
+SurfaceBlend blend_near_surface(const TriangleBvh& bvh, const Boundary& boundary, const Vec3& x) {
   const TriangleBvh::Closest c = bvh.closest(x);
   const PanelFrame& f = boundary.panels[c.face];
   const Real reach = kReach * std::sqrt(f.area * 4 / std::numbers::sqrt3), depth = std::sqrt(c.distance2);
   const bool inside = bvh.inside(x);
-  if (inside && depth >= reach) return interior(x);
-  const Sym3 surface = field.on_face(c.face, c.point);
-  if (!inside) return surface;
+  if (inside && depth >= reach) return {1, x, x, kNone};
   const Vec3 inward = depth > 1e-3 * reach ? (x - c.point) / depth : -f.normal;
   const Vec3 below = c.point + inward * reach;
   // In a wall thinner than the reach the point below may leave it: the surface value is all there is.
-  if (!bvh.inside(below)) return surface;
-  const Real w = depth / reach;
-  return surface * (1 - w) + interior(below) * w;
+  if (!inside || !bvh.inside(below)) return {0, x, c.point, c.face};
+  return {depth / reach, below, c.point, c.face};
 }
 
 }  // namespace sherd

@@ -1,7 +1,5 @@
 // How stress at the surface and stress inside are joined, whichever formulation they come from.
 #pragma once
-#include <functional>
-
 #include "engine/elastostatic/boundary.h"
 #include "engine/mesh/bvh.h"
 #include "engine/stress/stress_field.h"
@@ -12,9 +10,13 @@ namespace sherd {
 Sym3 interpolate_corners(const PanelFrame& panel, const SurfaceRecovery& recovery,
                          const std::vector<Sym3>& corner_stress, std::uint32_t face, const Vec3& x);
 
-// Stress at x: `interior` from 0.03 local edge lengths below the surface on, above it a linear transition to
-// field.on_face() at the closest surface point. Points outside get the value there.
-Sym3 blend_near_surface(const StressField& field, const TriangleBvh& bvh, const Boundary& boundary, const Vec3& x,
-                        const std::function<Sym3(const Vec3&)>& interior);
+// What stress at a point of the closed solid is made of: from 0.03 local edge lengths below the surface on that inside
+// alone, above it a linear transition to that of the closest face; points outside get the face's.
+struct SurfaceBlend {
+  Real inside = 1;             // weight of the stress at `below`, the rest is that of `on`
+  Vec3 below, on;              // m; `on` is a point of `face`
+  std::uint32_t face = kNone;  // kNone where inside = 1
+};
+SurfaceBlend blend_near_surface(const TriangleBvh& bvh, const Boundary& boundary, const Vec3& x);
 
 }  // namespace sherd

@@ -1,7 +1,6 @@
 #include "engine/stress/stress.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include "engine/stress/layer_gradient.h"
 #include "engine/stress/near_surface.h"
@@ -13,6 +12,21 @@ namespace sherd {
 namespace {
 
 constexpr Real kPull = 0.1;  // towards the centroid, of the barycentric coordinates
+
+// Of x, or of the point of the panel that it is clamped to.
+std::array<Real, 3> barycentric(const PanelFrame& f, const Vec3& x) {
+  std::array<Real, 3> l{};
+  l[1] = std::clamp(dot(f.shape_gradient(1), x - f.vertex[0]), 0.0, 1.0);
+  l[2] = std::clamp(dot(f.shape_gradient(2), x - f.vertex[0]), 0.0, 1.0 - l[1]);
+  l[0] = 1 - l[1] - l[2];
+  return l;
+}
+
+std::array<Real, 3> pulled(const std::array<Real, 3>& l) {
+  std::array<Real, 3> in{};
+  for (std::size_t k = 0; k < 3; ++k) in[k] = (l[k] + kPull) / (1 + 3 * kPull);
+  return in;
+}
 
 }  // namespace
 
@@ -34,7 +48,7 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
     for (std::size_t a = 0; a < u.size(); ++a) u[a] = nodes[body.reconstruction().nodes(t)[a]];
     elements_[t] = ElementField(b.panels[t], u, traction_polynomial(b, load, particular_, t), body.material());
   });
-  far_ = std::make_unique<FarField>(b, elements_, body.material(), body.options().quadrature);
+  somigliana_ = std::make_unique<Somigliana>(b, elements_, body.material(), body.options().quadrature);
   patch_load_.patches = load.patches;
   for (const auto& c : load.panels.corners) load_panels_.push_back(make_panel(c[0], c[1], c[2]));
   // Recovered is what the particular solution leaves: of the corners of a faceted body neither the tangent plane nor
@@ -64,59 +78,75 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
   }
 }
 
-void StressState::displacement_gradients(std::span<const Vec3> x, std::span<const std::uint32_t> face,
+void StressState::displacement_gradients(const Vec3Column& x, std::span<const std::uint32_t> face,
                                          std::span<Mat3> out) const {
-  far_->gradients(x, face, out);
-  for (std::size_t k = 0; k < x.size(); ++k)
+  somigliana_->gradients(x, face, out);
+  if (load_panels_.empty()) return;
+  parallel_for(x.size(), 8, [&](std::size_t k) {
     for (std::size_t i = 0; i < load_panels_.size(); ++i)
       out[k] +=
           layer_gradient(load_panels_[i], x[k], load_traction_[i], body_.material(), body_.options().quadrature).kelvin;
-}
-
-Mat3 StressState::displacement_gradient(const Vec3& x, std::uint32_t face) const {
-  Mat3 g;
-  displacement_gradients({&x, 1}, {&face, 1}, {&g, 1});
-  return g;
+  });
 }
 
 Sym3 StressState::interior(const Vec3& x) const {
-  return kelvin::hooke(displacement_gradient(x, kNone), body_.material()) + particular_.stress(x);
+  Vec3Column one;
+  one.push_back(x);
+  const std::uint32_t face = kNone;
+  Mat3 g;
+  displacement_gradients(one, {&face, 1}, {&g, 1});
+  return kelvin::hooke(g, body_.material()) + particular_.stress(x);
 }
 
-Sym3 StressState::on_face(std::uint32_t face, const Vec3& x) const {
+// The limit of Somigliana's gradient sees the kinks of the polyhedron, which the fits smooth over; at the edges it is
+// logarithmically infinite, so that it is taken a little inside and moved with the element's own gradient.
+Vec3 StressState::asked_on_face(std::uint32_t face, const Vec3& x) const {
+  const PanelFrame& f = body_.boundary().panels[face];
+  const std::array<Real, 3> l = pulled(barycentric(f, x));
+  return f.vertex[0] * l[0] + f.vertex[1] * l[1] + f.vertex[2] * l[2];
+}
+
+Sym3 StressState::stress_on_face(std::uint32_t face, const Vec3& x, const Mat3& gradient) const {
   const Boundary& b = body_.boundary();
   const PanelFrame& f = b.panels[face];
-  const Elastic& m = body_.material();
-  std::array<Real, 3> l{};
-  l[1] = std::clamp(dot(f.shape_gradient(1), x - f.vertex[0]), 0.0, 1.0);
-  l[2] = std::clamp(dot(f.shape_gradient(2), x - f.vertex[0]), 0.0, 1.0 - l[1]);
-  l[0] = 1 - l[1] - l[2];
-  // The limit of Somigliana's gradient sees the kinks of the polyhedron, which the fits smooth over; at the edges it is
-  // logarithmically infinite, so that it is taken a little inside and moved with the element's own gradient.
-  std::array<Real, 3> in{};
-  for (std::size_t k = 0; k < 3; ++k) in[k] = (l[k] + kPull) / (1 + 3 * kPull);
-  const Vec3 y = f.vertex[0] * in[0] + f.vertex[1] * in[1] + f.vertex[2] * in[2];
+  const std::array<Real, 3> l = barycentric(f, x), in = pulled(l);
   const ElementField& e = elements_[face];
-  Mat3 g = displacement_gradient(y, face);
-  g = g - outer(g * f.normal, f.normal) + e.surface_gradient(f, l[1], l[2]) - e.surface_gradient(f, in[1], in[2]);
+  const Mat3 g = gradient - outer(gradient * f.normal, f.normal) + e.surface_gradient(f, l[1], l[2]) -
+                 e.surface_gradient(f, in[1], in[2]);
   const Vec3 traction = e.traction_at(l[1], l[2]) + traction_at(patch_load_, b.mesh, x, face);
-  return surface_stress(g, f.normal, traction, m) + particular_.stress(x);
+  return surface_stress(g, f.normal, traction, body_.material()) + particular_.stress(x);
+}
+
+void StressState::on_faces(const Vec3Column& points, std::span<const std::uint32_t> face, std::span<Sym3> out) const {
+  Vec3Column asked(points.size());
+  std::vector<Mat3> gradient(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) asked.set(i, asked_on_face(face[i], points[i]));
+  displacement_gradients(asked, face, gradient);
+  for (std::size_t i = 0; i < points.size(); ++i) out[i] = stress_on_face(face[i], points[i], gradient[i]);
 }
 
 void StressState::evaluate(const Vec3Column& points, std::vector<Sym3>& out) const {
   out.resize(points.size());
-  parallel_for((points.size() + kLanes - 1) / kLanes, 1, [&](std::size_t group) {
-    const std::size_t first = group * kLanes, count = std::min(kLanes, points.size() - first);
-    std::array<Vec3, kLanes> x;
-    std::array<std::uint32_t, kLanes> face;
-    std::array<Mat3, kLanes> gradient;
-    for (std::size_t k = 0; k < count; ++k) x[k] = points[first + k], face[k] = kNone;
-    displacement_gradients({x.data(), count}, {face.data(), count}, {gradient.data(), count});
-    for (std::size_t k = 0; k < count; ++k)
-      out[first + k] = blend_near_surface(*this, bvh_, body_.boundary(), x[k], [&](const Vec3& y) {
-        return y == x[k] ? kelvin::hooke(gradient[k], body_.material()) + particular_.stress(y) : interior(y);
-      });
-  });
+  std::vector<SurfaceBlend> blend(points.size());
+  parallel_for(points.size(), 8,
+               [&](std::size_t i) { blend[i] = blend_near_surface(bvh_, body_.boundary(), points[i]); });
+  // All gradients at once: first the one below, then the one on the face, of those that need it.
+  Vec3Column asked;
+  std::vector<std::uint32_t> face;
+  for (const SurfaceBlend& b : blend) {
+    if (b.inside > 0) asked.push_back(b.below), face.push_back(kNone);
+    if (b.inside < 1) asked.push_back(asked_on_face(b.face, b.on)), face.push_back(b.face);
+  }
+  std::vector<Mat3> gradient(asked.size());
+  displacement_gradients(asked, face, gradient);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SurfaceBlend& b = blend[i];
+    out[i] = {};
+    if (b.inside > 0)
+      out[i] += (kelvin::hooke(gradient[next++], body_.material()) + particular_.stress(b.below)) * b.inside;
+    if (b.inside < 1) out[i] += stress_on_face(b.face, b.on, gradient[next++]) * (1 - b.inside);
+  }
 }
 
 }  // namespace sherd

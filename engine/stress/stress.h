@@ -3,7 +3,7 @@
 #pragma once
 #include "engine/elastostatic/solver.h"
 #include "engine/mesh/bvh.h"
-#include "engine/stress/far_field.h"
+#include "engine/stress/somigliana.h"
 #include "engine/stress/stress_field.h"
 
 namespace sherd {
@@ -27,12 +27,14 @@ class StressState final : public StressField {
   // Somigliana's gradient alone: any point inside, no blending; outside it gives the particular solution alone.
   Sym3 interior(const Vec3& x) const;
   // Stress of the flat face: Somigliana's gradient in the limit from inside, with the known traction on the face.
-  Sym3 on_face(std::uint32_t face, const Vec3& x) const override;
+  void on_faces(const Vec3Column& points, std::span<const std::uint32_t> face, std::span<Sym3> out) const override;
 
  private:
   // Of the homogeneous problem at x; `face`: the face x lies on, for the limit from inside, or kNone.
-  Mat3 displacement_gradient(const Vec3& x, std::uint32_t face) const;
-  void displacement_gradients(std::span<const Vec3> x, std::span<const std::uint32_t> face, std::span<Mat3> out) const;
+  void displacement_gradients(const Vec3Column& x, std::span<const std::uint32_t> face, std::span<Mat3> out) const;
+  // Where on_faces() asks for the gradient, and what it makes of it.
+  Vec3 asked_on_face(std::uint32_t face, const Vec3& x) const;
+  Sym3 stress_on_face(std::uint32_t face, const Vec3& x, const Mat3& gradient) const;
 
   const ElasticBody& body_;
   const SurfaceRecovery& recovery_;
@@ -42,7 +44,7 @@ class StressState final : public StressField {
   std::vector<Sym3> corner_stress_;
   std::vector<std::uint32_t> worst_corner_;
   std::vector<ElementField> elements_;  // per triangle
-  std::unique_ptr<FarField> far_;
+  std::unique_ptr<Somigliana> somigliana_;
   Load patch_load_;  // the contact patches alone
   std::vector<PanelFrame> load_panels_;
   Vec3Column load_traction_;

@@ -115,6 +115,31 @@ void interior_stress(benchmark::State& state) {
 }
 BENCHMARK(interior_stress)->ArgName("triangles")->Arg(1500)->Arg(6000)->Unit(benchmark::kMicrosecond);
 
+// Displacement gradients inside from so many triangles at so many points: direct (0) and fast (1) sums. A field of
+// constants will do.
+void interior_gradients(benchmark::State& state) {
+  const SurfaceMesh mesh = sphere_of(state.range(0));
+  const Boundary boundary(mesh, QuadratureOptions{});
+  std::vector<ElementField> elements;
+  for (const PanelFrame& f : boundary.panels)
+    elements.emplace_back(f, std::array<Vec3, cubic::kNodes>{f.normal}, ElementField::Quadratic{f.normal}, kMaterial);
+  const Somigliana somigliana(boundary, elements, kMaterial, {});
+  Random random(2);
+  Vec3Column x;
+  while (std::ssize(x.x) < state.range(1))
+    x.push_back({random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)});
+  const std::vector<std::uint32_t> face(x.size(), kNone);
+  std::vector<Mat3> out(x.size());
+  using FarSum = Somigliana::FarSum;
+  somigliana.gradients(x, face, out, FarSum::kFast);  // its translations are made once
+  for (auto _ : state) somigliana.gradients(x, face, out, state.range(2) ? FarSum::kFast : FarSum::kDirect);
+}
+BENCHMARK(interior_gradients)
+    ->ArgNames({"triangles", "points", "fast"})
+    ->ArgsProduct({{10000, 100000}, {2000, 20000}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
 void solve_thin_plate(benchmark::State& state) {
   const SurfaceMesh mesh = make_plate(1, 1, 0.05, 0.05);
   ElasticOptions options;
