@@ -1,6 +1,7 @@
 #include "engine/fracture/initiate.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace sherd {
 namespace {
@@ -11,6 +12,71 @@ CrackSeed make_seed(const SurfaceMesh& mesh, const SurfaceRecovery& recovery, co
   const Eigen3 e = eigen_symmetric(state.corner_stress()[corner]);
   return {mesh.vertices[vertex], recovery.corners()[corner].normal, {e.value[0], e.vector[0]}, vertex};
 }
+
+// Largest principal stress over strength per vertex; 0 where there is no stress.
+std::vector<Real> relative_stress(const SurfaceMesh& mesh, const StressState& state, const ScalarField& strength) {
+  std::vector<Real> value(mesh.vertex_count(), 0);
+  for (std::uint32_t v = 0; v < value.size(); ++v)
+    if (const std::uint32_t corner = state.worst_corner(v); corner != kNone)
+      value[v] = eigen_symmetric(state.corner_stress()[corner]).value[0] / strength.at(mesh.vertices[v]);
+  return value;
+}
+
+// Vertices that share an edge with a vertex: neighbour[first[v]] .. neighbour[first[v + 1]], each at least once.
+struct Rings {
+  explicit Rings(const SurfaceMesh& mesh) : first(mesh.vertex_count() + 1, 0) {
+    for (const Triangle& t : mesh.triangles)
+      for (const std::uint32_t v : t) first[v + 1] += 2;
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    neighbour.resize(first.back());
+    std::vector<std::size_t> end(first.begin(), first.end() - 1);
+    for (const Triangle& t : mesh.triangles)
+      for (std::size_t k = 0; k < 3; ++k)
+        neighbour[end[t[k]]++] = t[(k + 1) % 3], neighbour[end[t[k]]++] = t[(k + 2) % 3];
+  }
+  std::span<const std::uint32_t> of(std::uint32_t v) const {
+    return std::span(neighbour).subspan(first[v], first[v + 1] - first[v]);
+  }
+  std::vector<std::size_t> first;
+  std::vector<std::uint32_t> neighbour;
+};
+
+class PeakFinder {
+ public:
+  PeakFinder(const SurfaceMesh& mesh, std::span<const Real> value)
+      : mesh_(mesh), value_(value), rings_(mesh), visit_(mesh.vertex_count(), kNone) {}
+
+  // The plateau of v; empty when v is not its highest vertex. `least`: lower bound of the plateau.
+  std::vector<std::uint32_t> plateau(std::uint32_t v, Real least) {
+    const Real floor = std::max(least, (1 - kPlateau) * value_[v]);
+    std::vector<std::uint32_t> flooded{v};
+    visit_[v] = v;
+    for (std::size_t i = 0; i < flooded.size(); ++i)
+      for (const std::uint32_t w : rings_.of(flooded[i])) {
+        if (higher(w, v)) return {};
+        if (visit_[w] == v || !(value_[w] >= floor)) continue;
+        visit_[w] = v;
+        flooded.push_back(w);
+      }
+    return flooded;
+  }
+  bool higher(std::uint32_t a, std::uint32_t b) const { return value_[a] != value_[b] ? value_[a] > value_[b] : a < b; }
+  std::uint32_t middle(const std::vector<std::uint32_t>& plateau) const {
+    Vec3 centre;
+    for (const std::uint32_t v : plateau) centre += mesh_.vertices[v] / static_cast<Real>(plateau.size());
+    const auto nearer = [&](std::uint32_t a, std::uint32_t b) {
+      const Real da = distance2(mesh_.vertices[a], centre), db = distance2(mesh_.vertices[b], centre);
+      return da != db ? da < db : a < b;
+    };
+    return *std::min_element(plateau.begin(), plateau.end(), nearer);
+  }
+
+ private:
+  const SurfaceMesh& mesh_;
+  std::span<const Real> value_;
+  Rings rings_;
+  std::vector<std::uint32_t> visit_;  // the last peak whose flood reached the vertex
+};
 
 }  // namespace
 
@@ -24,37 +90,34 @@ void StressCrackField::principal_stress(const Vec3Column& points, std::vector<Pr
   }
 }
 
+std::vector<std::uint32_t> find_peaks(const SurfaceMesh& mesh, std::span<const Real> value, Real least) {
+  PeakFinder finder(mesh, value);
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t v = 0; v < value.size(); ++v)
+    if (value[v] > least) order.push_back(v);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return finder.higher(a, b); });
+  std::vector<std::uint32_t> peaks;
+  for (const std::uint32_t v : order)
+    if (const std::vector<std::uint32_t> plateau = finder.plateau(v, least); !plateau.empty())
+      peaks.push_back(finder.middle(plateau));
+  return peaks;
+}
+
 std::vector<CrackSeed> find_seeds(const SurfaceMesh& mesh, const SurfaceRecovery& recovery, const StressState& state,
-                                  Real strength) {
-  const std::size_t n = mesh.vertex_count();
-  std::vector<Real> value(n, 0);
-  for (std::uint32_t v = 0; v < n; ++v)
-    if (state.worst_corner(v) != kNone)
-      value[v] = eigen_symmetric(state.corner_stress()[state.worst_corner(v)]).value[0];
-  std::vector<bool> maximal(n, true);
-  for (const Triangle& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      const bool a_first = value[a] != value[b] ? value[a] > value[b] : a < b;
-      maximal[a_first ? b : a] = false;
-    }
+                                  const ScalarField& strength) {
   std::vector<CrackSeed> seeds;
-  for (std::uint32_t v = 0; v < n; ++v)
-    if (maximal[v] && value[v] > strength) seeds.push_back(make_seed(mesh, recovery, state, v));
-  std::sort(seeds.begin(), seeds.end(), [](const CrackSeed& a, const CrackSeed& b) {
-    return a.stress.value != b.stress.value ? a.stress.value > b.stress.value : a.vertex < b.vertex;
-  });
+  for (const std::uint32_t v : find_peaks(mesh, relative_stress(mesh, state, strength), 1))
+    seeds.push_back(make_seed(mesh, recovery, state, v));
   return seeds;
 }
 
-CrackSeed strongest_point(const SurfaceMesh& mesh, const SurfaceRecovery& recovery, const StressState& state) {
-  CrackSeed best;
-  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
-    if (state.worst_corner(v) == kNone) continue;
-    const CrackSeed s = make_seed(mesh, recovery, state, v);
-    if (best.vertex == kNone || s.stress.value > best.stress.value) best = s;
-  }
-  return best;
+CrackSeed strongest_point(const SurfaceMesh& mesh, const SurfaceRecovery& recovery, const StressState& state,
+                          const ScalarField& strength) {
+  const std::vector<Real> value = relative_stress(mesh, state, strength);
+  std::uint32_t best = kNone;
+  for (std::uint32_t v = 0; v < value.size(); ++v)
+    if (state.worst_corner(v) != kNone && (best == kNone || value[v] > value[best])) best = v;
+  return best == kNone ? CrackSeed{} : make_seed(mesh, recovery, state, best);
 }
 
 }  // namespace sherd

@@ -319,8 +319,9 @@ FractureResult fracture_solid(Solid& solid, const MassProperties& clean_mass, co
   {
     const Stopwatch watch(result.seconds.stress);
     state = std::make_unique<StressState>(*elastic, solid.recovery(), solid.bvh(), load, particular, solution);
-    result.strongest = strongest_point(solid.mesh(), solid.recovery(), *state);
-    seeds = find_seeds(solid.mesh(), solid.recovery(), *state, options.strength);
+    const ScalarFieldPtr strength = constant_field(options.strength);
+    result.strongest = strongest_point(solid.mesh(), solid.recovery(), *state, *strength);
+    seeds = find_seeds(solid.mesh(), solid.recovery(), *state, *strength);
   }
   result.seeds = seeds.size();
   if (!std::isfinite(result.strongest.stress.value)) {

@@ -1,68 +1,15 @@
-// Synthetic stress fields and bodies for the crack tests.
+// Bodies for the crack tests, and the laws of grown sheets.
 #pragma once
 #include <cmath>
-#include <functional>
 #include <string>
 
 #include "engine/fracture/grow.h"
+#include "engine/fracture/synthetic_fields.h"
 #include "engine/fracture/thicken.h"
 #include "engine/mesh/shapes.h"
 #include "kernels/core/random.h"
 
 namespace sherd {
-
-// A field given by a function of position. `sign` -1 flips every eigenvector.
-class FunctionField : public CrackField {
- public:
-  using Function = std::function<PrincipalStress(const Vec3&)>;
-  explicit FunctionField(Function f, Real sign = 1) : f_(std::move(f)), sign_(sign) {}
-  void principal_stress(const Vec3Column& points, std::vector<PrincipalStress>& out) const override {
-    out.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      out[i] = f_(points[i]);
-      out[i].direction = sign_ * normalized(out[i].direction);
-      ++evaluations;
-    }
-    ++batches;
-  }
-  mutable std::size_t evaluations = 0, batches = 0;
-
- private:
-  Function f_;
-  Real sign_;
-};
-
-inline FunctionField::Function constant_direction(const Vec3& e) {
-  return [e](const Vec3&) { return PrincipalStress{1, e}; };
-}
-// e turns about `axis` by `rate` radians per metre along `along`.
-inline FunctionField::Function rotating_direction(const Vec3& e, const Vec3& axis, const Vec3& along, Real rate) {
-  return [=](const Vec3& p) {
-    const Real a = rate * dot(p, along);
-    const Vec3 k = normalized(axis);
-    return PrincipalStress{1, std::cos(a) * e + std::sin(a) * cross(k, e) + (1 - std::cos(a)) * dot(k, e) * k};
-  };
-}
-// e plus three fixed plane waves of the given amplitude (each component) and wavelength (m).
-inline FunctionField::Function noisy_direction(const Vec3& e, Real amplitude, Real wavelength, std::uint64_t seed) {
-  Random random(seed);
-  struct Wave {
-    Vec3 k, a;
-    Real phase;
-  };
-  std::vector<Wave> waves;
-  for (int i = 0; i < 3; ++i) {
-    const auto unit = [&] {
-      return normalized(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
-    };
-    waves.push_back({2 * M_PI / wavelength * unit(), amplitude * unit(), random.uniform(0, 2 * M_PI)});
-  }
-  return [e, waves](const Vec3& p) {
-    Vec3 sum = e;
-    for (const Wave& w : waves) sum += std::sin(dot(w.k, p) + w.phase) * w.a;
-    return PrincipalStress{1, sum};
-  };
-}
 
 struct Specimen {
   explicit Specimen(SurfaceMesh m) : mesh(std::move(m)), bvh(mesh), h(mean_edge_length(mesh)) {
