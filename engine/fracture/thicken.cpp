@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "engine/material/scalar_field.h"
 #include "engine/mesh/intersections.h"
 
 namespace sherd {
@@ -84,7 +85,7 @@ Refined refine(const CrackSheet& sheet) {
   return r;
 }
 
-SurfaceMesh offset(const Refined& r, Real thickness) {
+SurfaceMesh offset(const Refined& r, const std::vector<Real>& thickness) {
   const std::size_t n = r.position.size();
   Vec3Column normal(n);
   std::vector<Real> area(n, 0);
@@ -97,7 +98,7 @@ SurfaceMesh offset(const Refined& r, Real thickness) {
   for (std::size_t v = 0; v < n; ++v) {
     // Longer where the sheet bends, so that the slab's volume is thickness times area and not a cosine less.
     const Real stretch = std::min(area[v] / std::max(norm(normal[v]), 1e-300), kMaxStretch);
-    const Vec3 half = r.single[v] ? Vec3{} : 0.5 * thickness * stretch * normalized(normal[v]);
+    const Vec3 half = r.single[v] ? Vec3{} : 0.5 * thickness[v] * stretch * normalized(normal[v]);
     up[v] = static_cast<std::uint32_t>(slab.vertices.size());
     slab.vertices.push_back(r.position[v] + half);
     down[v] = up[v];
@@ -119,39 +120,54 @@ SurfaceMesh offset(const Refined& r, Real thickness) {
   return slab;
 }
 
+// Per node of the refined sheet, m; empty with the reason when a value is no thickness.
+std::vector<Real> thicknesses(const Refined& r, const SlabOptions& options, std::string& reason) {
+  std::vector<Real> t(r.position.size(), options.thickness);
+  for (std::size_t v = 0; v < t.size(); ++v) {
+    if (options.field) t[v] = options.field->at(r.position[v]);
+    if (t[v] > 0 && std::isfinite(t[v])) continue;
+    reason = fmt::format("thickness {} m is not positive", t[v]);
+    return {};
+  }
+  return t;
+}
+
+// Empty when the slab may be cut out of a body (the design's L1).
+std::string check_slab(const SurfaceMesh& slab) {
+  for (const std::uint32_t twin : build_twins(slab))
+    if (twin == kNone) return "the slab is not closed: the sheet is not a manifold with border";
+  if (!(signed_volume(slab) > 0)) return "the slab has no positive volume";
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  if (count_self_intersections(slab, 1, &pairs) == 0) return {};
+  const Vec3 p = slab.centroid(pairs.front().first);
+  return fmt::format("the slab intersects itself near ({:.4g}, {:.4g}, {:.4g}) m", p.x, p.y, p.z);
+}
+
 }  // namespace
 
-std::optional<SurfaceMesh> thicken(const CrackSheet& sheet, Real thickness, std::int32_t crack_id,
-                                   std::string& reason) {
+std::optional<SurfaceMesh> thicken(const CrackSheet& sheet, const SlabOptions& options, std::string& reason) {
   reason.clear();
-  if (!(thickness > 0) || !std::isfinite(thickness)) {
-    reason = fmt::format("thickness {} m is not positive", thickness);
-    return std::nullopt;
-  }
   if (sheet.triangles.empty()) {
     reason = "the sheet is empty";
     return std::nullopt;
   }
-  SurfaceMesh slab = offset(refine(sheet), thickness);
+  const Refined refined = refine(sheet);
+  const std::vector<Real> thickness = thicknesses(refined, options, reason);
+  if (!reason.empty()) return std::nullopt;
+  SurfaceMesh slab = offset(refined, thickness);
+  slab.faces.resize(slab.triangle_count());
   slab.faces.kind.assign(slab.triangles.size(), FaceKind::kCrack);
-  slab.faces.crack.assign(slab.triangles.size(), crack_id);
-  slab.faces.source.assign(slab.triangles.size(), -1);
-  for (const std::uint32_t twin : build_twins(slab))
-    if (twin == kNone) {
-      reason = "the slab is not closed: the sheet is not a manifold with border";
-      return std::nullopt;
-    }
-  if (!(signed_volume(slab) > 0)) {
-    reason = "the slab has no positive volume";
-    return std::nullopt;
-  }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  if (count_self_intersections(slab, 1, &pairs) > 0) {
-    const Vec3 p = slab.centroid(pairs.front().first);
-    reason = fmt::format("the slab intersects itself near ({:.4g}, {:.4g}, {:.4g}) m", p.x, p.y, p.z);
-    return std::nullopt;
-  }
+  slab.faces.crack.assign(slab.triangles.size(), options.crack);
+  reason = check_slab(slab);
+  if (!reason.empty()) return std::nullopt;
   return slab;
+}
+
+std::optional<SurfaceMesh> thicken(const CrackSheet& sheet, Real thickness, std::int32_t crack_id,
+                                   std::string& reason) {
+  SlabOptions options;
+  options.thickness = thickness, options.crack = crack_id;
+  return thicken(sheet, options, reason);
 }
 
 }  // namespace sherd

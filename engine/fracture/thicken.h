@@ -6,8 +6,18 @@
 
 namespace sherd {
 
+class ScalarField;
+
+struct SlabOptions {
+  Real thickness = 0;                  // m
+  const ScalarField* field = nullptr;  // m, of the place in material space; when given, instead of `thickness`
+  std::int32_t crack = 0;              // id of the slab's faces
+};
+
 // A closed, embedded, outward-oriented mesh around the sheet, or nothing with the reason when it is not embedded.
 // Every face has FaceKind::kCrack and the given crack id.
+std::optional<SurfaceMesh> thicken(const CrackSheet& sheet, const SlabOptions& options, std::string& reason);
+// Of one thickness.
 std::optional<SurfaceMesh> thicken(const CrackSheet& sheet, Real thickness, std::int32_t crack_id, std::string& reason);
 
 }  // namespace sherd

@@ -13,7 +13,7 @@ namespace {
 constexpr int kMaxJitters = 8;
 constexpr Real kJitter = 1e-7;  // of h
 
-// Copies, so that the columns of attributes are complete whatever the caller left out.
+// A copy, so that the columns of attributes are complete whatever the caller left out.
 SurfaceMesh with_attributes(const SurfaceMesh& mesh) {
   SurfaceMesh copy = mesh;
   copy.faces.resize(mesh.triangle_count());
@@ -31,17 +31,18 @@ SurfaceMesh jittered(const SurfaceMesh& slab, Real amplitude, std::uint64_t seed
 }
 
 // One try with the slab as it is. `again`: another jitter may help.
-Difference attempt(const CutOperand& body, const SurfaceMesh& slab_mesh, bool first, bool& again) {
+Difference attempt(const CutOperand& body, const SurfaceMesh& slab_mesh, bool first, bool checked, bool& again) {
   Difference result;
   again = false;
   const CutOperand slab(slab_mesh);
-  if (const std::string text = check_manifold(slab_mesh, slab.twin); !text.empty()) {
-    result.reason = "the slab is not a closed manifold: " + text;
-    return result;
-  }
+  if (first && !checked)
+    if (const std::string text = check_manifold(slab_mesh, slab.twin); !text.empty()) {
+      result.reason = "the slab is not a closed manifold: " + text;
+      return result;
+    }
   // The caller's slab has to be embedded; one that a jitter has folded over is only an unlucky draw.
   again = !first;
-  if (count_self_intersections(slab_mesh, 1) > 0) {
+  if (!(first && checked) && count_self_intersections(slab_mesh, 1) > 0) {
     result.reason = "the slab intersects itself";
     return result;
   }
@@ -60,19 +61,15 @@ Difference attempt(const CutOperand& body, const SurfaceMesh& slab_mesh, bool fi
   return result;
 }
 
-std::string refuse_operands(const SurfaceMesh& body, const SurfaceMesh& slab, const CutOperand& operand) {
-  if (std::string text = check_manifold(body, operand.twin); !text.empty())
-    return "the body is not a closed manifold: " + text;
-  if (!(signed_volume(body) > 0)) return "the body has no positive volume";
-  if (!(signed_volume(slab) > 0)) return "the slab has no positive volume";
-  return {};
-}
-
 void collect(const Difference& difference, const CutOptions& options, CutResult& result) {
   result.reason.clear();
   result.removed_volume = difference.removed_volume;
-  for (Piece& piece : split_pieces(difference.mesh)) {
-    if (piece.volume < options.min_fragment_volume * difference.body_volume) {
+  result.touched = difference.touched.size();
+  std::vector<Piece> pieces = split_pieces(difference.mesh);
+  result.separated = pieces.size() > 1;
+  for (Piece& piece : pieces) {
+    const bool dust = piece.volume < options.min_fragment_volume * difference.body_volume;
+    if (dust && options.dust == DustRule::kDrop) {
       result.dust_volume += piece.volume;
     } else {
       result.fragments.push_back(std::move(piece.mesh));
@@ -84,19 +81,21 @@ void collect(const Difference& difference, const CutOptions& options, CutResult&
 
 }  // namespace
 
-CutResult cut(const SurfaceMesh& body, const SurfaceMesh& slab, const CutOptions& options) {
+CutResult cut(const CutBody& body, const SurfaceMesh& slab, const CutOptions& options) {
   CutResult result;
-  for (const auto& [mesh, name] : {std::pair(&body, "the body"), std::pair(&slab, "the slab")})
-    if (result.reason = check_numbers(*mesh, name); !result.reason.empty()) return result;
-  const CutOperand operand(with_attributes(body));
+  if (result.reason = body.defect(); !result.reason.empty()) return result;
+  if (result.reason = check_numbers(slab, "the slab"); !result.reason.empty()) return result;
   const SurfaceMesh full_slab = with_attributes(slab);
-  if (result.reason = refuse_operands(body, slab, operand); !result.reason.empty()) return result;
-  const Real amplitude = kJitter * (options.edge_length > 0 ? options.edge_length : mean_edge_length(body));
+  if (!(signed_volume(slab) > 0)) {
+    result.reason = "the slab has no positive volume";
+    return result;
+  }
+  const Real amplitude = kJitter * (options.edge_length > 0 ? options.edge_length : mean_edge_length(body.mesh()));
   Random seeds(options.seed);
   for (int jitters = 0;; ++jitters) {
     bool again = false;
     const SurfaceMesh moved = jitters == 0 ? full_slab : jittered(full_slab, amplitude, seeds.next());
-    const Difference difference = attempt(operand, moved, jitters == 0, again);
+    const Difference difference = attempt(body.operand(), moved, jitters == 0, options.slab_checked, again);
     result.jitters = jitters;
     if (difference.ok) {
       collect(difference, options, result);
@@ -106,6 +105,10 @@ CutResult cut(const SurfaceMesh& body, const SurfaceMesh& slab, const CutOptions
     if (again && jitters == kMaxJitters) result.reason += fmt::format(" (after {} jitters of the slab)", jitters);
     if (!again || jitters == kMaxJitters) return result;
   }
+}
+
+CutResult cut(const SurfaceMesh& body, const SurfaceMesh& slab, const CutOptions& options) {
+  return cut(CutBody(body), slab, options);
 }
 
 }  // namespace sherd

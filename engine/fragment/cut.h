@@ -3,14 +3,18 @@
 #include <string>
 #include <vector>
 
-#include "engine/mesh/surface_mesh.h"
+#include "engine/fragment/cut_body.h"
 
 namespace sherd {
+
+enum class DustRule { kDrop, kKeep };
 
 struct CutOptions {
   Real edge_length = 0;             // h, m: scale of the jitter and of clean-up
   std::uint64_t seed = 1;           // of the jitter
   Real min_fragment_volume = 1e-5;  // of the body's volume; smaller pieces are dust
+  DustRule dust = DustRule::kDrop;  // kKeep: dust becomes fragments like all others
+  bool slab_checked = false;        // the slab is known to be closed, manifold and embedded, as thicken() leaves it
 };
 
 struct CutResult {
@@ -19,11 +23,14 @@ struct CutResult {
   std::vector<SurfaceMesh> fragments;  // each valid, cavities with the solid that contains them; largest volume first
   Real removed_volume = 0;             // of body intersected with slab, m^3
   Real dust_volume = 0;                // of pieces dropped, m^3
+  bool separated = false;              // into two solids or more, dust counted
+  std::size_t touched = 0;             // faces of the result that are parts of a cut face
   int jitters = 0;                     // restarts because of an exact coincidence
 };
 
 // Faces away from the slab are bit-identical to the input and keep their attributes; sub-faces inherit their parent's;
 // slab walls keep the slab's (kind crack, crack id).
+CutResult cut(const CutBody& body, const SurfaceMesh& slab, const CutOptions& options);
 CutResult cut(const SurfaceMesh& body, const SurfaceMesh& slab, const CutOptions& options);
 
 }  // namespace sherd

@@ -11,7 +11,7 @@ namespace sherd {
 
 // A mesh with what the cut asks of it.
 struct CutOperand {
-  explicit CutOperand(const SurfaceMesh& surface) : mesh(surface), twin(build_twins(surface)), bvh(surface) {}
+  explicit CutOperand(SurfaceMesh surface) : mesh(std::move(surface)), twin(build_twins(mesh)), bvh(mesh) {}
   SurfaceMesh mesh;
   std::vector<std::uint32_t> twin;  // directed edge 3 t + k -> opposite
   TriangleBvh bvh;

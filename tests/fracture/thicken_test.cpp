@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "engine/material/scalar_field.h"
 #include "engine/mesh/intersections.h"
 #include "tests/fracture/crack_support.h"
 
@@ -77,6 +78,25 @@ TEST(Thicken, MixedBorderTapersToTheFront) {
   expect_closed_embedded(*slab);
   // Full thickness up to y = 2, then a wedge; the front's interior edges (none here) would add midpoints.
   EXPECT_NEAR(signed_volume(*slab), 0.1 * (6 + 1.5), 1e-12);
+}
+
+// Piecewise linear over the sheet's triangles: a field linear in x gives each triangle its mean over the corners.
+TEST(Thicken, AFieldGivesEachNodeItsOwnThickness) {
+  struct Ramp : ScalarField {
+    Real at(const Vec3& x) const override { return 0.1 + 0.05 * x.x; }
+    Real lower() const override { return 0.1; }
+    Real upper() const override { return 0.3; }
+  };
+  const Ramp ramp;
+  SlabOptions options;
+  options.field = &ramp, options.crack = 3;
+  std::string reason;
+  const auto slab = thicken(grid(4, NodeState::kExited), options, reason);
+  ASSERT_TRUE(slab) << reason;
+  expect_closed_embedded(*slab);
+  for (std::size_t v = 0; v < slab->vertex_count(); ++v)
+    EXPECT_NEAR(2 * std::abs(slab->vertices[v].z), ramp.at(slab->vertices[v]), 1e-15);
+  EXPECT_NEAR(signed_volume(*slab), 16 * 0.2, 1e-12);
 }
 
 TEST(Thicken, RefusesWithAReason) {
