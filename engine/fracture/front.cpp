@@ -57,6 +57,11 @@ void ask_field(Growth& g) {
   }
 }
 
+Real strength_at(const Growth& g, std::uint32_t v) {
+  const ScalarField* field = g.options.propagation_field;
+  return field ? field->at(g.sheet.position[v]) : g.options.propagation_strength;
+}
+
 bool lags_behind(const Growth& g, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   const Vec3 to_a = along(g, b, a), to_c = along(g, b, c), o = outward_direction(g, a, b, c);
   if (dot(to_a, o) > kAheadFactor * g.h && dot(to_c, o) > kAheadFactor * g.h) return true;
@@ -131,7 +136,8 @@ Growth::Growth(const TriangleBvh& body_, const CrackField& field_, const GrowthO
       options(options_),
       h(edge),
       overshoot(overshoot_),
-      sheet(edge, 1.1 * std::max(options_.thickness, kMinClearance * edge)) {}
+      sheet(edge, 1.1 * std::max(options_.thickness_field ? options_.thickness_field->upper() : options_.thickness,
+                                 kMinClearance * edge)) {}
 
 Vec3 outward_direction(const Growth& g, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   const Vec3 e = g.sheet.normal[b], before = normalized(along(g, a, b)), after = normalized(along(g, b, c));
@@ -160,7 +166,7 @@ void label_front(Growth& g) {
       NodeState& s = g.sheet.state[v];
       if ((s != NodeState::kActive && s != NodeState::kArrested) || !g.sheet.stress_known[v]) continue;
       const bool was_arrested = s == NodeState::kArrested;
-      s = g.sheet.stress[v].value >= g.options.propagation_strength ? NodeState::kActive : NodeState::kArrested;
+      s = g.sheet.stress[v].value >= strength_at(g, v) ? NodeState::kActive : NodeState::kArrested;
       if (s == NodeState::kArrested && was_arrested &&
           lags_behind(g, loop[(i + loop.size() - 1) % loop.size()], v, loop[(i + 1) % loop.size()]))
         s = NodeState::kActive;

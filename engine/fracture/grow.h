@@ -1,10 +1,13 @@
 // Crack growth (paper 6.3, algorithms 2 and 3; the design's O1-O8): from a seed on the surface to a sheet that is
 // complete (its whole border lies outside the body) or arrested.
 #pragma once
+#include <array>
+#include <functional>
 #include <string>
 
 #include "engine/fracture/crack_field.h"
 #include "engine/fracture/sheet.h"
+#include "engine/material/scalar_field.h"
 #include "engine/mesh/bvh.h"
 
 namespace sherd {
@@ -19,21 +22,37 @@ struct CrackSeed {
 struct GrowthOptions {
   Real edge_length = 0;           // h: target edge of body and sheet, m
   Real propagation_strength = 0;  // Pa
-  Real thickness = 0;             // t, m (decides nothing while growing but the overshoot's lower bound)
+  Real thickness = 0;             // t, m: of the slab that the sheet must be able to become; 0: not asked
   Real speed = 0.5;               // the paper's alpha: step in units of h at the seed's stress; clamped to 0.4 .. 0.8
   Real overshoot = 0.15;          // of h: how far past the surface an exited node is placed
   int max_steps = 0;              // 0: 4 x (bounding-box diagonal / edge_length) + 64
+  // When given, they take the place of the numbers above. Borrowed: they outlive the growth.
+  const ScalarField* propagation_field = nullptr;
+  const ScalarField* thickness_field = nullptr;
+  // The last test of a rung of the ladder, asked with the sheet as it will be returned, complete or arrested: a text
+  // refuses it with that reason and the next rung is tried. When given, it takes the place of the test that the slab
+  // closes and does not meet itself.
+  std::function<std::string(const CrackSheet&)> accept;
 };
 
 enum class GrowthOutcome { kComplete, kArrested, kRejectedSeed, kFailed };
 
+// Rung 0 follows the true field; 1 .. 4 blend it more and more towards the seed's plane, the last on a finer sheet
+// (O8).
+inline constexpr int kRungCount = 5;
+struct Rungs {
+  std::array<std::string, kRungCount> reason;  // why each rung failed; empty when it succeeded or was not tried
+};
+
 struct GrowthResult {
   GrowthOutcome outcome = GrowthOutcome::kFailed;
   CrackSheet sheet;
-  int ladder_level = 0;  // 0: the true field; 1..4: blended towards the seed's plane (O8)
+  int ladder_level = 0;  // the rung this is the result of
   int steps = 0;
   Real area = 0;       // of the sheet part inside the body, m^2
-  std::string reason;  // of a rejection or failure; with ladder_level > 0 also why the true field failed
+  Real length = 0;     // of the sheet's trace on the body's surface, m
+  std::string reason;  // of a rejection or failure; with ladder_level > 0 why the true field failed
+  Rungs rungs;
 };
 
 // `body` must describe a valid mesh. Never throws for geometric trouble: the outcome says what happened. Deterministic.

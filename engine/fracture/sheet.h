@@ -36,9 +36,17 @@ std::vector<std::vector<std::uint32_t>> border_loops(const CrackSheet& sheet);
 // degenerate triangle, no self-intersection. Returns the first violation in words, or an empty string.
 std::string check_sheet(const CrackSheet& sheet);
 
-// Area of the part of the sheet inside the body, m^2. Triangles that cross the surface are divided in four (in 4^5 at
-// the body's sharp edges), then clipped by the straight line between the crossings of their edges: exact where body and
-// sheet are flat, an error of (edge / 2)^2 / (8 curvature radius) per length of the crack's outline elsewhere.
-Real area_inside(const CrackSheet& sheet, const TriangleBvh& body);
+// The part of a sheet inside the body.
+struct SheetExtent {
+  Real area = 0;   // m^2
+  Real trace = 0;  // length of the line where the sheet meets the body's surface, m
+};
+// Triangles that cross the surface are divided in four (in 4^5 at the body's sharp edges), then clipped by the straight
+// line between the crossings of their edges: exact where body and sheet are flat, an error of the area of
+// (edge / 2)^2 / (8 curvature radius) per length of the crack's outline elsewhere.
+SheetExtent extent_inside(const CrackSheet& sheet, const TriangleBvh& body);
+inline Real area_inside(const CrackSheet& sheet, const TriangleBvh& body) {
+  return extent_inside(sheet, body).area;
+}
 
 }  // namespace sherd

@@ -33,6 +33,8 @@ class TriangleBvh {
   // Pairs (face here, face there) whose boxes overlap, sorted.
   void overlapping_pairs(const TriangleBvh& other, std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const;
 
+  // Around all triangles.
+  Box box() const { return nodes_.empty() ? Box{} : nodes_[0].box; }
   std::size_t triangle_count() const { return corners_.size(); }
   const std::array<Vec3, 3>& corners(std::uint32_t face) const { return corners_[face]; }
 

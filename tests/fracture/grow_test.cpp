@@ -38,6 +38,8 @@ TEST(GrowCrack, ConstantFieldCutsASphereInAPlanarDisk) {
   // The section of the inscribed polyhedron is smaller than the circle's by about h^2 / (6 R^2) = 0.3 %, the clipped
   // area by another h^2 / (16 R^2); 1 % covers both.
   EXPECT_NEAR(r.area, M_PI * (1 - x * x), 0.01 * M_PI);
+  // A chord of the circle is shorter than its arc by h^2 / (24 R^2) = 0.06 %, the circle of the polyhedron by 0.15 %.
+  EXPECT_NEAR(r.length, 2 * M_PI * std::sqrt(1 - x * x), 0.005 * 2 * M_PI);
 }
 
 TEST(GrowCrack, ConstantFieldCutsACubeInAUnitSquare) {
@@ -47,6 +49,7 @@ TEST(GrowCrack, ConstantFieldCutsACubeInAUnitSquare) {
   EXPECT_EQ(check_grown(r, cube(), cube().options().thickness), "");
   // Flat faces and sheet: the clipped area is exact but for triangles around the four corners, divided to h / 16.
   EXPECT_NEAR(r.area, 1.0, 1e-4);
+  EXPECT_NEAR(r.length, 4.0, 1e-2);  // corners cut by up to h / 16 each
 }
 
 TEST(GrowCrack, SignOfTheEigenvectorDoesNotMatter) {
@@ -100,6 +103,45 @@ TEST(GrowCrack, StopsWhereStressFallsBelowTheStrength) {
   const auto slab = thicken(r.sheet, 0.01, 1, reason);
   ASSERT_TRUE(slab) << reason;
   EXPECT_LT(signed_volume(*slab), 0.01 * sheet_area(r.sheet));  // zero thickness at the front
+}
+
+TEST(GrowCrack, ARefusedSheetClimbsTheLadderAndTheReasonsAreKept) {
+  const FunctionField field(constant_direction({1, 0, 0}));
+  GrowthOptions o = sphere().options();
+  const CrackSeed seed = sphere().seed_at(sphere().nearest_vertex({0, 1, 0}), field);
+  int asked = 0;
+  o.accept = [&](const CrackSheet& sheet) {
+    EXPECT_EQ(check_sheet(sheet), "");
+    return ++asked < 3 ? "refusal " + std::to_string(asked) : std::string();
+  };
+  const GrowthResult r = grow_crack(sphere().bvh, field, seed, o);
+  ASSERT_EQ(r.outcome, GrowthOutcome::kComplete);
+  EXPECT_EQ(r.ladder_level, 2);
+  EXPECT_EQ(r.rungs.reason, (std::array<std::string, kRungCount>{"refusal 1", "refusal 2"}));
+  EXPECT_EQ(r.reason, "refusal 1");
+  o.accept = [](const CrackSheet&) { return "never"; };
+  const GrowthResult never = grow_crack(sphere().bvh, field, seed, o);
+  EXPECT_EQ(never.outcome, GrowthOutcome::kFailed);
+  for (const std::string& reason : never.rungs.reason) EXPECT_EQ(reason, "never");
+}
+
+TEST(GrowCrack, AFieldOfStrengthStopsTheCrackWhereTheNumberWould) {
+  class Layer final : public ScalarField {
+   public:
+    Real at(const Vec3& x) const override { return x.y > 0.2 ? 0.5 : 2; }
+    Real lower() const override { return 0.5; }
+    Real upper() const override { return 2; }
+  } const layer;
+  const FunctionField field(constant_direction({1, 0, 0}));
+  GrowthOptions o = sphere().options();
+  o.propagation_field = &layer;
+  const CrackSeed seed = sphere().seed_at(sphere().nearest_vertex({0, 1, 0}), field);
+  const GrowthResult r = grow_crack(sphere().bvh, field, seed, o);
+  ASSERT_EQ(r.outcome, GrowthOutcome::kArrested) << r.reason;
+  Real lowest = 1;
+  for (std::size_t v = 0; v < r.sheet.position.size(); ++v) lowest = std::min(lowest, r.sheet.position[v].y);
+  EXPECT_GT(lowest, 0.2 - 1.3 * sphere().h);  // one step past the layer and the overshoot
+  EXPECT_LT(lowest, 0.2 + 0.1 * sphere().h);
 }
 
 TEST(GrowCrack, ResumedCrackEndsAsTheUninterruptedOne) {

@@ -1,0 +1,164 @@
+#include "engine/fracture/attempt.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/fracture/advance.h"
+#include "engine/fracture/thicken.h"
+
+namespace sherd {
+namespace {
+
+// The crack normal is blended towards the seed's until the sheet closes; the last rung grows on a finer sheet.
+struct Rung {
+  Real blend, edge, overshoot;  // the last two in units of the options' own
+};
+constexpr Rung kLadder[kRungCount] = {{0, 1, 1}, {0.5, 1, 1}, {0.8, 1, 1}, {1, 1, 1}, {1, 0.8, 2.0 / 3}};
+
+bool any_node(const Growth& g, NodeState s) {
+  for (const FrontLoop& loop : g.loops)
+    for (const std::uint32_t v : loop)
+      if (g.sheet.state[v] == s) return true;
+  return false;
+}
+
+// A front whose greater part runs along another layer of its own sheet missed it and would spiral on: the arms of a
+// crack behind a cavity can pass each other so. Ending the attempt at once saves asking for stress.
+bool spirals(Growth& g) {
+  constexpr Real kReach = 1.5;  // of h
+  constexpr int kLeast = 6;
+  int active = 0, layered = 0;
+  for (const FrontLoop& loop : g.loops)
+    for (const std::uint32_t v : loop)
+      if (g.sheet.state[v] == NodeState::kActive) ++active, layered += g.sheet.has_layer(v, kReach * g.h);
+  return layered >= kLeast && 2 * layered > active;
+}
+
+// Interior nodes only and each move a transaction, so the front and the invariants stay.
+void smooth_interior(Growth& g) {
+  constexpr int kPasses = 3;
+  for (int pass = 0; pass < kPasses; ++pass)
+    for (std::uint32_t v = 0; v < g.sheet.state.size(); ++v) {
+      if (g.sheet.state[v] != NodeState::kInterior || g.sheet.incident[v].empty()) continue;
+      Vec3 mean{};
+      const std::vector<std::uint32_t> ring = g.sheet.neighbours(v);
+      for (const std::uint32_t w : ring) mean += g.sheet.position[w];
+      g.sheet.move(v, 0.5 * (g.sheet.position[v] + mean / static_cast<Real>(ring.size())));
+    }
+}
+
+Real edge_of(const GrowthOptions& o, int level) {
+  return kLadder[level].edge * o.edge_length;
+}
+
+int step_limit(const TriangleBvh& body, const GrowthOptions& o, Real h) {
+  if (o.max_steps > 0) return o.max_steps;
+  return static_cast<int>(std::min(4 * body.box().diagonal() / h, 1e6)) + 64;
+}
+
+}  // namespace
+
+std::string check_options(const TriangleBvh& body, const GrowthOptions& o) {
+  if (body.triangle_count() == 0) return "the body has no triangles";
+  if (!(o.edge_length > 0) || !std::isfinite(o.edge_length)) return "edge_length must be positive";
+  if (!(o.overshoot > 0 && o.overshoot <= 1)) return "overshoot must lie in (0, 1]";
+  if (!(o.speed > 0) || !std::isfinite(o.propagation_strength)) return "speed must be positive, strength finite";
+  if (!(o.thickness >= 0) || !std::isfinite(o.thickness)) return "thickness must not be negative";
+  if (o.thickness_field && !(o.thickness_field->lower() >= 0 && std::isfinite(o.thickness_field->upper())))
+    return "the thickness field must not be negative";
+  if (body.box().diagonal() > 5e5 * o.edge_length) return "edge_length is too small for the body";
+  return {};
+}
+
+std::string open_sheet(Growth& g, const CrackSheet& sheet) {
+  g.sheet.load(sheet);
+  g.loops = border_loops(sheet);
+  if (g.loops.empty()) return "the sheet has no front";
+  for (NodeState& s : g.sheet.state)
+    if (s == NodeState::kBlocked) s = NodeState::kArrested;  // tried again under the new stress
+  g.reference_stress = sheet.reference_stress;
+  g.seed_normal = norm2(sheet.seed_normal) > 0 ? sheet.seed_normal : normalized(sheet.normal[0]);
+  return {};
+}
+
+Attempt::Attempt(const TriangleBvh& body, const CrackField& field, const GrowthOptions& options, int level)
+    : growth_(body, field, options, edge_of(options, level),
+              options.overshoot * options.edge_length * kLadder[level].overshoot),
+      level_(level),
+      limit_(step_limit(body, options, edge_of(options, level))) {
+  growth_.blend = kLadder[level].blend;
+}
+
+bool Attempt::step() {
+  Growth& g = growth_;
+  if (ended_ || spiral_ || steps_ >= limit_) return false;
+  label_front(g);
+  spiral_ = spirals(g);
+  if (spiral_) return false;
+  if (any_node(g, NodeState::kActive)) {
+    advance_front(g, front_velocity(g));
+  } else if (!remesh_front(g)) {
+    ended_ = true;
+    return false;
+  }
+  remesh_front(g);
+  ++steps_;
+  return true;
+}
+
+void Attempt::judge(GrowthResult& result) const {
+  const Growth& g = growth_;
+  std::size_t live = 0;
+  Vec3 place;
+  for (const FrontLoop& loop : g.loops)
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      if (!is_dead(g, loop[i], loop[(i + 1) % loop.size()]) && live++ == 0) place = g.sheet.position[loop[i]];
+  result.outcome = GrowthOutcome::kFailed;
+  const std::string where = fmt::format("near ({:.4g}, {:.4g}, {:.4g}) m", place.x, place.y, place.z);
+  if (live == 0)
+    result.outcome = GrowthOutcome::kComplete;
+  else if (spiral_)
+    result.reason = "the front runs along its own sheet " + where;
+  else if (!ended_)
+    result.reason = fmt::format("still growing after {} steps {}", steps_, where);
+  else if (any_node(g, NodeState::kArrested))
+    result.outcome = GrowthOutcome::kArrested;
+  else if (any_node(g, NodeState::kBlocked))
+    result.reason = "the front is blocked by its own sheet " + where;
+  else
+    result.reason = "the sheet's border still cuts the body " + where;
+}
+
+std::string Attempt::test(const CrackSheet& sheet) const {
+  std::string reason = check_sheet(sheet);
+  if (!reason.empty()) return reason;
+  const GrowthOptions& o = growth_.options;
+  if (o.accept) return o.accept(sheet);
+  const Real thickness = o.thickness_field ? o.thickness_field->upper() : o.thickness;
+  if (thickness > 0) thicken(sheet, thickness, 0, reason);
+  return reason;
+}
+
+GrowthResult Attempt::finish() {
+  Growth& g = growth_;
+  GrowthResult result;
+  result.steps = steps_;
+  result.ladder_level = level_;
+  judge(result);
+  if (result.outcome == GrowthOutcome::kFailed) return result;
+  smooth_interior(g);
+  result.sheet = g.sheet.extract();
+  result.sheet.reference_stress = g.reference_stress;
+  result.sheet.seed_normal = g.seed_normal;
+  result.reason = test(result.sheet);
+  if (!result.reason.empty()) {
+    result.outcome = GrowthOutcome::kFailed;
+    return result;
+  }
+  const SheetExtent extent = extent_inside(result.sheet, g.body);
+  result.area = extent.area, result.length = extent.trace;
+  return result;
+}
+
+}  // namespace sherd

@@ -1,0 +1,34 @@
+// One rung of the ladder (O8): a growth from its start to its end, step by step, so that several cracks can take turns.
+// Internal to the fracture stage.
+#pragma once
+#include "engine/fracture/front.h"
+
+namespace sherd {
+
+class Attempt {
+ public:
+  // level: the rung, 0 .. kRungCount - 1. The sheet is empty: open_seed() or open_sheet() lays the first one.
+  Attempt(const TriangleBvh& body, const CrackField& field, const GrowthOptions& options, int level);
+
+  Growth& growth() { return growth_; }
+  // Labels the front and moves it on. Returns false when growth has ended, for whatever reason.
+  bool step();
+  // The outcome and, when the growth did not fail, the sheet with all its tests passed.
+  GrowthResult finish();
+
+ private:
+  void judge(GrowthResult& result) const;
+  std::string test(const CrackSheet& sheet) const;
+
+  Growth growth_;
+  int level_, steps_ = 0, limit_;
+  bool ended_ = false;  // no active node is left
+  bool spiral_ = false;
+};
+
+// Why growth with these options cannot start, or an empty string.
+std::string check_options(const TriangleBvh& body, const GrowthOptions& options);
+// Goes on from a stopped sheet. Returns the reason of a refusal, or an empty string.
+std::string open_sheet(Growth& g, const CrackSheet& sheet);
+
+}  // namespace sherd
