@@ -65,8 +65,8 @@ std::string check_options(const TriangleBvh& body, const GrowthOptions& o) {
   if (!(o.overshoot > 0 && o.overshoot <= 1)) return "overshoot must lie in (0, 1]";
   if (!(o.speed > 0) || !std::isfinite(o.propagation_strength)) return "speed must be positive, strength finite";
   if (!(o.thickness >= 0) || !std::isfinite(o.thickness)) return "thickness must not be negative";
-  if (o.thickness_field && !(o.thickness_field->lower() >= 0 && std::isfinite(o.thickness_field->upper())))
-    return "the thickness field must not be negative";
+  if (o.thickness_field && !(o.thickness_field->lower() > 0 && std::isfinite(o.thickness_field->upper())))
+    return "the thickness field must be positive";
   if (body.box().diagonal() > 5e5 * o.edge_length) return "edge_length is too small for the body";
   return {};
 }
@@ -135,8 +135,7 @@ std::string Attempt::test(const CrackSheet& sheet) const {
   if (!reason.empty()) return reason;
   const GrowthOptions& o = growth_.options;
   if (o.accept) return o.accept(sheet);
-  const Real thickness = o.thickness_field ? o.thickness_field->upper() : o.thickness;
-  if (thickness > 0) thicken(sheet, thickness, 0, reason);
+  if (o.thickness > 0 || o.thickness_field) thicken(sheet, {o.thickness, o.thickness_field}, reason);
   return reason;
 }
 
