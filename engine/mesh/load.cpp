@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "engine/mesh/attributes.h"
 #include "engine/mesh/load_raw.h"
 #include "engine/mesh/repair_loop.h"
 #include "kernels/core/error.h"
@@ -65,15 +66,6 @@ void place(const std::string& path, SurfaceMesh& mesh, const LoadOptions& option
                                  std::max({far.x, far.y, far.z}), options.scale));
 }
 
-// Keeps the triangles with keep[t].
-void keep_triangles(SurfaceMesh& mesh, const std::vector<bool>& keep) {
-  std::vector<Triangle> triangles;
-  FaceAttributes faces;
-  for (std::size_t t = 0; t < keep.size(); ++t)
-    if (keep[t]) triangles.push_back(mesh.triangles[t]), faces.push_back_from(mesh.faces, t);
-  mesh.triangles = std::move(triangles), mesh.faces = std::move(faces);
-}
-
 void drop_useless_triangles(SurfaceMesh& mesh, std::vector<std::string>& messages) {
   std::vector<bool> keep(mesh.triangle_count(), true);
   std::vector<std::pair<Triangle, std::size_t>> turned;  // smallest index first, orientation kept
@@ -92,7 +84,7 @@ void drop_useless_triangles(SurfaceMesh& mesh, std::vector<std::string>& message
     if (turned[i].first == turned[i - 1].first) keep[turned[i].second] = false, ++copies;
   if (repeated > 0) messages.push_back(fmt::format("dropped {} triangles with a repeated vertex", repeated));
   if (copies > 0) messages.push_back(fmt::format("dropped {} copies of triangles", copies));
-  if (repeated + copies > 0) keep_triangles(mesh, keep);
+  if (repeated + copies > 0) keep_faces(mesh, keep);
 }
 
 }  // namespace

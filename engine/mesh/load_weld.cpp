@@ -38,7 +38,7 @@ SurfaceMesh merged(const SurfaceMesh& mesh, DisjointSets& sets) {
     }
   for (const Triangle& t : mesh.triangles)
     out.triangles.push_back({name[sets.find(t[0])], name[sets.find(t[1])], name[sets.find(t[2])]});
-  out.faces = mesh.faces;
+  out.faces = mesh.faces, out.channels = mesh.channels;
   return out;
 }
 

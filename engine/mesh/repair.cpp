@@ -47,7 +47,7 @@ class Repair {
 
   void refuse_raw() const {
     if (mesh_.triangles.empty()) refuse("no triangles; nothing to break");
-    const MeshReport r = report_mesh({mesh_.vertices, {}, {}});
+    const MeshReport r = report_mesh({mesh_.vertices, {}, {}, {}});
     if (r.bad_coordinates > 0)
       refuse(fmt::format("{} vertices have a coordinate that is not finite; export the mesh again", r.bad_coordinates));
     for (std::size_t t = 0; t < mesh_.triangle_count(); ++t)

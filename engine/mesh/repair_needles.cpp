@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "engine/mesh/attributes.h"
 #include "engine/mesh/repair_steps.h"
 #include "engine/mesh/validate_edges.h"
 
@@ -133,10 +134,8 @@ class NeedleRemover {
     return true;
   }
   void remove_dead() {
-    SurfaceMesh kept;
-    for (std::size_t t = 0; t < mesh_.triangle_count(); ++t)
-      if (!dead_[t]) kept.triangles.push_back(mesh_.triangles[t]), kept.faces.push_back_from(mesh_.faces, t);
-    mesh_.triangles = std::move(kept.triangles), mesh_.faces = std::move(kept.faces);
+    dead_.flip();
+    keep_faces(mesh_, dead_);
   }
 
   SurfaceMesh& mesh_;

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "engine/mesh/attributes.h"
 #include "engine/mesh/repair_steps.h"
 #include "engine/mesh/validate.h"
 #include "engine/mesh/validate_edges.h"
@@ -7,15 +8,11 @@
 namespace sherd {
 
 std::size_t drop_repeated_vertex_triangles(SurfaceMesh& mesh) {
-  SurfaceMesh kept;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    const Triangle& f = mesh.triangles[t];
-    if (f[0] == f[1] || f[1] == f[2] || f[2] == f[0]) continue;
-    kept.triangles.push_back(f), kept.faces.push_back_from(mesh.faces, t);
-  }
-  const std::size_t dropped = mesh.triangle_count() - kept.triangle_count();
-  mesh.triangles = std::move(kept.triangles), mesh.faces = std::move(kept.faces);
-  return dropped;
+  const std::size_t before = mesh.triangle_count();
+  std::vector<bool> keep;
+  for (const Triangle& f : mesh.triangles) keep.push_back(f[0] != f[1] && f[1] != f[2] && f[2] != f[0]);
+  keep_faces(mesh, keep);
+  return before - mesh.triangle_count();
 }
 
 std::size_t drop_unused_vertices(SurfaceMesh& mesh) {
@@ -112,7 +109,7 @@ Orientation orient(SurfaceMesh& mesh) {
     // The majority keeps its side.
     const bool invert = 2 * turned > component.size();
     for (const std::uint32_t t : component)
-      if ((turn[t] == 1) != invert) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]), ++result.flipped;
+      if ((turn[t] == 1) != invert) turn_face(mesh, t), ++result.flipped;
   }
   return result;
 }
@@ -128,7 +125,7 @@ std::size_t turn_shells(SurfaceMesh& mesh) {
   std::size_t turned = 0;
   for (std::uint32_t c = 0; c < components; ++c) turned += side[c] * volume6[c] < 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
-    if (side[label[t]] * volume6[label[t]] < 0) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+    if (side[label[t]] * volume6[label[t]] < 0) turn_face(mesh, t);
   return turned;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/mesh/attributes.h"
 #include "engine/mesh/bvh.h"
 
 namespace sherd {
@@ -19,10 +20,10 @@ SurfaceMesh extract_faces(const SurfaceMesh& mesh, const std::vector<std::uint32
   part.vertices.reserve(used.size());
   for (std::uint32_t v : used) part.vertices.push_back(mesh.vertices[v]);
   part.triangles.reserve(faces.size());
+  match_channels(mesh, part);
   for (std::uint32_t f : faces) {
     const Triangle& t = mesh.triangles[f];
-    part.triangles.push_back({place(t[0]), place(t[1]), place(t[2])});
-    part.faces.push_back_from(mesh.faces, f);
+    append_face(mesh, f, {place(t[0]), place(t[1]), place(t[2])}, part);
   }
   return part;
 }

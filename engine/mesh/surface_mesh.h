@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "kernels/core/column.h"
@@ -20,18 +21,38 @@ struct FaceAttributes {
   std::vector<FaceKind> kind;
   std::vector<std::int32_t> crack;   // crack id of a kCrack face, -1 otherwise
   std::vector<std::int32_t> source;  // triangle of the input mesh an original face descends from, -1 otherwise
+  std::vector<std::int8_t> side;     // of a kCrack face: +1 or -1 for the sheet's two walls, 0 for its rim; 0 otherwise
+  std::vector<std::uint16_t> material;  // 0 outside, 1 on crack faces, unless the scene or the file says otherwise
 
-  void resize(std::size_t n) { kind.resize(n, FaceKind::kOriginal), crack.resize(n, -1), source.resize(n, -1); }
+  std::size_t size() const { return kind.size(); }
+  void resize(std::size_t n) {
+    kind.resize(n, FaceKind::kOriginal), crack.resize(n, -1), source.resize(n, -1), side.resize(n, 0),
+        material.resize(n, 0);
+  }
   void push_back_from(const FaceAttributes& other, std::size_t i) {
-    kind.push_back(other.kind[i]), crack.push_back(other.crack[i]), source.push_back(other.source[i]);
+    kind.push_back(other.kind[i]), crack.push_back(other.crack[i]), source.push_back(other.source[i]),
+        side.push_back(other.side[i]), material.push_back(other.material[i]);
   }
   friend bool operator==(const FaceAttributes&, const FaceAttributes&) = default;
+};
+
+// Values at the corners of triangles, so that they may jump across edges (texture seams). value[(3 t + k) * components
+// + i] is component i at corner k of triangle t. Code that makes or drops faces keeps them (engine/mesh/attributes.h)
+// or leaves out the channels altogether.
+struct CornerChannel {
+  std::string name;  // "uv", or the attribute's name in the file
+  int components = 1;
+  std::vector<float> value;
+
+  std::size_t width() const { return 3 * static_cast<std::size_t>(components); }  // values per triangle
+  friend bool operator==(const CornerChannel&, const CornerChannel&) = default;
 };
 
 struct SurfaceMesh {
   Vec3Column vertices;  // metres
   std::vector<Triangle> triangles;
-  FaceAttributes faces;  // same length as triangles
+  FaceAttributes faces;                 // same length as triangles
+  std::vector<CornerChannel> channels;  // mostly none; each of width() * triangle_count() values
 
   std::size_t vertex_count() const { return vertices.size(); }
   std::size_t triangle_count() const { return triangles.size(); }
@@ -42,6 +63,7 @@ struct SurfaceMesh {
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     triangles.push_back({a, b, c});
     faces.resize(triangles.size());
+    for (CornerChannel& channel : channels) channel.value.resize(channel.width() * triangles.size(), 0);
   }
   friend bool operator==(const SurfaceMesh&, const SurfaceMesh&) = default;
 };

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "engine/mesh/attributes.h"
 #include "kernels/core/error.h"
 
 namespace sherd {
@@ -47,9 +48,8 @@ bool has_cracks(const SurfaceMesh& mesh) {
 }
 
 void check_columns(const SurfaceMesh& mesh) {
-  const std::size_t n = mesh.triangle_count();
-  SHERD_CHECK(mesh.faces.kind.size() == n && mesh.faces.crack.size() == n && mesh.faces.source.size() == n,
-              "face columns of {} entries for {} triangles", mesh.faces.kind.size(), n);
+  const std::string text = check_attributes(mesh);
+  SHERD_CHECK(text.empty(), "{}", text);
 }
 
 }  // namespace

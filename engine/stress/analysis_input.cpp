@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/body/mass.h"
+#include "engine/mesh/attributes.h"
 #include "engine/mesh/intersections.h"
 #include "engine/mesh/validate.h"
 #include "engine/mesh/validate_edges.h"
@@ -124,13 +125,15 @@ SurfaceMesh split_triangles(const SurfaceMesh& mesh, int levels) {
       fine.vertices.push_back(0.5 * (out.vertices[uses[i].low] + out.vertices[uses[i].high]));
     }
     fine.triangles.reserve(4 * out.triangle_count());
-    for (std::size_t t = 0; t < out.triangle_count(); ++t) {
+    match_channels(out, fine);
+    for (std::uint32_t t = 0; t < out.triangle_count(); ++t) {
       const auto [a, b, c] = out.triangles[t];
       const std::uint32_t ab = middle[3 * t], bc = middle[3 * t + 1], ca = middle[3 * t + 2];
       for (const Triangle& child :
            {Triangle{a, ab, ca}, Triangle{ab, b, bc}, Triangle{ca, bc, c}, Triangle{ab, bc, ca}}) {
         fine.triangles.push_back(child);
         fine.faces.push_back_from(out.faces, t);
+        interpolate_corners(out, t, {fine.vertices[child[0]], fine.vertices[child[1]], fine.vertices[child[2]]}, fine);
       }
     }
     out = std::move(fine);
