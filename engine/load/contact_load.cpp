@@ -3,24 +3,8 @@
 #include <algorithm>
 
 #include "engine/load/hertz.h"
-#include "engine/load/patch.h"
 
 namespace sherd {
-namespace {
-
-// Panels' resultant force and moment about `origin`; exact, the traction is constant on each panel.
-void resultant(const TractionPanels& panels, const Vec3& origin, Vec3& force, Vec3& moment) {
-  force = moment = Vec3{};
-  for (std::size_t i = 0; i < panels.size(); ++i) {
-    const auto& c = panels.corners[i];
-    const Vec3 f = panels.traction[i] * (0.5 * norm(cross(c[1] - c[0], c[2] - c[0])));
-    force += f;
-    moment += cross((c[0] + c[1] + c[2]) / 3.0 - origin, f);
-  }
-}
-
-}  // namespace
-
 Real curvature_radius(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh,
                       const Vec3& point) {
   const TriangleBvh::Closest c = bvh.closest(point);
@@ -85,26 +69,6 @@ BodyContact body_contact(const Body& body, const Body* other, const Contact& con
                                             : std::clamp(hertz_radius(norm(c.force), radius, modulus),
                                                          smallest_patch(diagonal, options), 0.25 * diagonal);
   return c;
-}
-
-Load make_load(const SurfaceMesh& mesh, const MassProperties& mass, std::span<const BodyContact> contacts,
-               const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh, const Vec3& omega) {
-  Load load;
-  for (const BodyContact& c : contacts) {
-    load.patches.push_back(make_patch(mesh, twins, bvh, c.point, c.patch_radius, c.force));
-    append_panels(mesh, load.patches.back(), load.panels);
-  }
-  Vec3 force, moment;
-  resultant(load.panels, mass.centre, force, moment);
-  const Mat3& inertia = mass.inertia;
-  const Vec3 alpha = inverse(inertia) * (moment - cross(omega, inertia * omega));
-  const Mat3 spin = cross_matrix(omega);
-  load.body_force.origin = mass.centre;
-  load.body_force.constant = force * (-1 / mass.volume);
-  load.body_force.linear = (cross_matrix(alpha) + spin * spin) * (-mass.mass / mass.volume);
-  load.net_force = force + load.body_force.constant * mass.volume;
-  load.net_moment = moment - inertia * alpha - cross(omega, inertia * omega);
-  return load;
 }
 
 }  // namespace sherd

@@ -1,7 +1,5 @@
-// Contact impulses to tractions (paper 6.2: f = impulse / contact duration), made self-equilibrated by inertia relief.
+// Contact impulses to forces on patches of the surface (paper 6.2: f = impulse / contact duration).
 #pragma once
-#include <span>
-
 #include "engine/contact/contact.h"
 #include "engine/load/load.h"
 #include "engine/mesh/bvh.h"
@@ -39,12 +37,5 @@ Real smallest_patch(Real diagonal, const ContactLoadOptions& options);
 // below half the local edge length nor above the bounding-box diagonal (a flat face).
 Real curvature_radius(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh,
                       const Vec3& point);
-
-// The load of all contacts on one free body with the given mesh and mass. Inertia relief:
-// b(x) = -rho [F/m + alpha x d + omega x (omega x d)], d = x - centre, I alpha = moment - omega x (I omega), rho =
-// mass/volume. Weight and its reaction enter through the contact forces; free fall is stress free. `omega`: angular
-// velocity in material axes, rad/s; `mass` exactly of `mesh`, so that the load balances to rounding.
-Load make_load(const SurfaceMesh& mesh, const MassProperties& mass, std::span<const BodyContact> contacts,
-               const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh, const Vec3& omega);
 
 }  // namespace sherd

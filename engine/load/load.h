@@ -12,6 +12,7 @@ namespace sherd {
 struct ContactPatch {
   Vec3 centre;                       // on the surface, m
   Real radius = 0;                   // m
+  Vec3 axis;                         // outward unit normal there
   Vec3 force;                        // N
   Real normalisation = 0;            // integral of the weight over the marked faces, m^2
   std::vector<std::uint32_t> faces;  // ascending

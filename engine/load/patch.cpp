@@ -47,7 +47,7 @@ ContactPatch make_patch(const SurfaceMesh& mesh, const std::vector<std::uint32_t
   const TriangleBvh::Closest start = bvh.closest(centre);
   ContactPatch p;
   p.centre = start.point, p.radius = radius, p.force = force;
-  const Vec3 axis = normalized(mesh.area_normal2(start.face));
+  p.axis = normalized(mesh.area_normal2(start.face));
   std::vector<std::uint32_t> stack{start.face};
   std::vector<bool> seen(mesh.triangle_count(), false);
   seen[start.face] = true;
@@ -62,7 +62,7 @@ ContactPatch make_patch(const SurfaceMesh& mesh, const std::vector<std::uint32_t
       if (seen[g]) continue;
       seen[g] = true;
       const Vec3 q = closest_point_on_triangle(p.centre, mesh.corner(g, 0), mesh.corner(g, 1), mesh.corner(g, 2));
-      if (distance2(q, p.centre) >= radius * radius || dot(mesh.area_normal2(g), axis) <= 0) continue;
+      if (distance2(q, p.centre) >= radius * radius || dot(mesh.area_normal2(g), p.axis) <= 0) continue;
       p.faces.push_back(g), stack.push_back(g);
     }
   }
@@ -73,6 +73,19 @@ ContactPatch make_patch(const SurfaceMesh& mesh, const std::vector<std::uint32_t
     p.radius = std::sqrt(norm(mesh.area_normal2(start.face)));
     p.normalisation = integrate_weight(mesh, p);
   }
+  return p;
+}
+
+ContactPatch patch_part(const SurfaceMesh& piece, const ContactPatch& whole) {
+  ContactPatch p = whole;
+  p.faces.clear();
+  for (std::uint32_t f = 0; f < piece.triangle_count(); ++f) {
+    if (piece.faces.kind[f] != FaceKind::kOriginal || dot(piece.area_normal2(f), whole.axis) <= 0) continue;
+    const Vec3 q = closest_point_on_triangle(whole.centre, piece.corner(f, 0), piece.corner(f, 1), piece.corner(f, 2));
+    if (distance2(q, whole.centre) < whole.radius * whole.radius) p.faces.push_back(f);
+  }
+  p.normalisation = integrate_weight(piece, p);
+  p.force = whole.force * (p.normalisation / whole.normalisation);
   return p;
 }
 

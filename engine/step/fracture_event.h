@@ -6,7 +6,7 @@
 
 #include "engine/fracture/grow.h"
 #include "engine/fragment/cut.h"
-#include "engine/load/contact_load.h"
+#include "engine/load/surface_load.h"
 #include "engine/step/solid.h"
 
 namespace sherd {

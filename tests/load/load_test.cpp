@@ -3,9 +3,9 @@
 
 #include <numbers>
 
-#include "engine/load/contact_load.h"
 #include "engine/load/hertz.h"
 #include "engine/load/patch.h"
+#include "engine/load/surface_load.h"
 #include "engine/mesh/shapes.h"
 
 namespace sherd {

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "engine/body/mass.h"
-#include "engine/load/contact_load.h"
+#include "engine/load/surface_load.h"
 #include "kernels/core/parallel.h"
 #include "kernels/core/random.h"
 
