@@ -82,6 +82,17 @@ void keep_faces(SurfaceMesh& mesh, const std::vector<bool>& keep) {
   mesh.channels = std::move(kept.channels);
 }
 
+void overwrite_face(const SurfaceMesh& from, std::uint32_t face, std::uint32_t slot, SurfaceMesh& to) {
+  check_match(from, to);
+  to.faces.kind[slot] = from.faces.kind[face], to.faces.crack[slot] = from.faces.crack[face];
+  to.faces.source[slot] = from.faces.source[face], to.faces.side[slot] = from.faces.side[face];
+  to.faces.material[slot] = from.faces.material[face];
+  for (std::size_t c = 0; c < from.channels.size(); ++c) {
+    const std::size_t width = from.channels[c].width();
+    std::copy_n(from.channels[c].value.data() + width * face, width, to.channels[c].value.data() + width * slot);
+  }
+}
+
 void turn_face(SurfaceMesh& mesh, std::size_t face) {
   std::swap(mesh.triangles[face][1], mesh.triangles[face][2]);
   for (CornerChannel& c : mesh.channels) {

@@ -25,6 +25,9 @@ void append_face(const SurfaceMesh& from, std::uint32_t face, const Triangle& t,
 // Keeps the faces with keep[t], in order; vertices stay.
 void keep_faces(SurfaceMesh& mesh, const std::vector<bool>& keep);
 
+// Overwrites what face `slot` of `to` carries with what `face` carries: columns and, channels matching, corner values.
+void overwrite_face(const SurfaceMesh& from, std::uint32_t face, std::uint32_t slot, SurfaceMesh& to);
+
 // Turns a face over: corners 1 and 2 swap, with their values.
 void turn_face(SurfaceMesh& mesh, std::size_t face);
 

@@ -48,6 +48,9 @@ struct RemeshReport {
 // InputError for options out of range.
 RemeshReport remesh(const SurfaceMesh& in, const RemeshOptions& options, SurfaceMesh& out);
 
+// Smallest angle of a triangle, radians; 0 for a degenerate one.
+Real smallest_angle(const std::array<Vec3, 3>& corners);
+
 // Lock flags that leave alone what is good already: nonzero for vertices farther than `distance` (metres, along edges)
 // from every face with an angle below 15 degrees or an edge outside [0.5, 1.6] edge_length. A fragment remeshed with
 // them changes near its new walls only, and its volume and untouched faces stay what they were.

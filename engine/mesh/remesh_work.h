@@ -82,7 +82,4 @@ class Remesher {
   std::vector<std::uint32_t> replaced_, near_;
 };
 
-// Smallest angle, radians; 0 for a degenerate triangle.
-Real smallest_angle(const std::array<Vec3, 3>& corners);
-
 }  // namespace sherd
