@@ -10,6 +10,7 @@
 
 #include "kernels/core/error.h"
 #include "kernels/core/parallel.h"
+#include "tools/bench/cracks.h"
 #include "tools/bench/fmm.h"
 #include "tools/bench/pairs.h"
 #include "tools/bench/solve.h"
@@ -142,6 +143,42 @@ CLI::App* add_solve(CLI::App& app, SolveCommand& c) {
   return solve;
 }
 
+struct CracksCommand {
+  sherd::bench::CracksOptions options;
+  int threads = 0;
+};
+
+CLI::App* add_cracks(CLI::App& app, CracksCommand& c) {
+  using namespace sherd::campaign;
+  static const std::map<std::string, FieldKind> fields = [] {
+    std::map<std::string, FieldKind> names;
+    for (const FieldKind kind : all_fields()) names[to_string(kind)] = kind;
+    return names;
+  }();
+  CLI::App* cracks = app.add_subcommand("cracks", "many random cracks, grown, cut and checked; fixed seeds");
+  CampaignOptions& o = c.options.campaign;
+  cracks->add_option("--shapes", c.options.shapes, "default: all")->check(CLI::IsMember(specimen_names()));
+  cracks->add_option("--fields", o.fields, "constant, rotating, noise (default: all)")
+      ->transform(CLI::CheckedTransformer(fields));
+  cracks->add_option("--count", o.count, "cracks a shape and field")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  cracks->add_option("--first", o.first, "number of the first")->capture_default_str();
+  cracks->add_option("--seed", o.seed)->capture_default_str();
+  cracks->add_option("--noise", o.noise, "amplitude")->check(CLI::NonNegativeNumber)->capture_default_str();
+  cracks->add_option("--rotation", o.rotation, "rad per diagonal")->capture_default_str();
+  cracks->add_option("--thickness", o.thickness, "of the diagonal")->check(CLI::PositiveNumber)->capture_default_str();
+  cracks->add_option("--meshes", c.options.meshes, "folder of the statues; absent ones are skipped")
+      ->capture_default_str();
+  cracks->add_flag("--log", c.options.log, "a line for each crack that left the true field");
+  cracks->add_option("--threads", c.threads, "0: all; 1 for times")->check(CLI::NonNegativeNumber);
+  cracks->add_option("--json", c.options.json, "file for the numbers");
+  cracks->footer(
+      "Examples:\n  sherd-bench cracks --json out.json\n  sherd-bench cracks --shapes hollow --fields noise --first 17 "
+      "--count 1 --log");
+  return cracks;
+}
+
 int run_micro(const std::string& program, std::vector<std::string> rest) {
   std::string name = program;
   std::vector<char*> arguments{name.data()};
@@ -171,7 +208,13 @@ int main(int argc, char** argv) {
   CLI::App* fmm = add_fmm(app, fmm_options);
   SolveCommand solve_command;
   CLI::App* solve = add_solve(app, solve_command);
+  CracksCommand cracks_command;
+  CLI::App* cracks = add_cracks(app, cracks_command);
   CLI11_PARSE(app, argc, argv);
+  if (*cracks) {
+    const sherd::ThreadLimit limit(cracks_command.threads);
+    return sherd::bench::run_cracks(cracks_command.options);
+  }
   if (*solve) {
     const sherd::ThreadLimit limit(solve_command.threads);
     return sherd::bench::run_solve(solve_command.options);

@@ -1,0 +1,20 @@
+// The crack campaign as a benchmark: shares of cracks that follow the true field, and what went wrong where.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/campaign/campaign.h"
+
+namespace sherd::bench {
+
+struct CracksOptions {
+  std::vector<std::string> shapes;  // empty: all
+  campaign::CampaignOptions campaign;
+  std::string meshes = "../shared/meshes/dev";  // folder of the statues
+  bool log = false;                             // a line for each job that left the true field
+  std::string json;
+};
+// Prints a table; 0, or 1 when a result was invalid, a body changed or a job hung.
+int run_cracks(const CracksOptions& options);
+
+}  // namespace sherd::bench

@@ -1,0 +1,110 @@
+#include "tools/campaign/crack.h"
+
+#include <exception>
+
+#include "engine/fracture/thicken.h"
+#include "engine/step/stopwatch.h"
+#include "tools/campaign/hash.h"
+
+namespace sherd::campaign {
+namespace {
+
+CutOptions cut_options(const GrowthOptions& growth) {
+  CutOptions o;
+  o.edge_length = growth.edge_length;
+  o.slab_checked = true;
+  return o;
+}
+
+// Fills in all but the outcome's meaning; false when a stage refused.
+bool grow_and_cut(const Specimen& s, const FunctionField& field, const CrackSeed& seed, const GrowthOptions& options,
+                  Crack& crack) {
+  CrackReport& r = crack.report;
+  {
+    const Stopwatch watch(r.grow_s);
+    crack.growth = grow_crack(s.body.bvh(), field, seed, options);
+  }
+  const GrowthResult& g = crack.growth;
+  r.level = g.ladder_level, r.reason = g.reason, r.steps = static_cast<std::size_t>(g.steps), r.area = g.area;
+  r.sheet_triangles = g.sheet.triangles.size();
+  if (g.outcome == GrowthOutcome::kRejectedSeed) r.outcome = CrackOutcome::kRejected;
+  if (g.outcome != GrowthOutcome::kComplete && g.outcome != GrowthOutcome::kArrested) return false;
+  const Stopwatch watch(r.cut_s);
+  std::string reason;
+  auto slab = thicken(g.sheet, options.thickness, 0, reason);
+  if (!slab) {
+    r.reason = "slab refused: " + reason;
+    return false;
+  }
+  crack.slab = std::move(*slab);
+  crack.cut = cut(s.body, crack.slab, cut_options(options));
+  r.fragments = crack.cut.fragments.size(), r.jitters = crack.cut.jitters, r.touched = crack.cut.touched;
+  r.removed_volume = crack.cut.removed_volume;
+  if (!crack.cut.ok) r.reason = "cut refused: " + crack.cut.reason;
+  return crack.cut.ok;
+}
+
+void judge(const Specimen& s, const GrowthOptions& options, Crack& crack) {
+  CrackReport& r = crack.report;
+  const bool through = crack.growth.outcome == GrowthOutcome::kComplete;
+  r.outcome = !through              ? CrackOutcome::kArrested
+              : crack.cut.separated ? CrackOutcome::kSeparated
+                                    : CrackOutcome::kPierced;
+  r.invalid = check_sheet_laws(crack.growth, s.body.bvh(), options.thickness);
+  if (r.invalid.empty()) r.invalid = check_cut_laws(s.body, crack.cut);
+  // V2: in a body without handles whatever has its whole border outside separates.
+  if (r.invalid.empty() && r.outcome == CrackOutcome::kPierced && s.simply_connected)
+    r.invalid = "a complete crack does not separate a body without handles";
+  r.balance = balance_of(s.body, crack.cut);
+}
+
+std::uint64_t hash_of(const Crack& crack) {
+  Hash hash;
+  hash.add_number(static_cast<std::uint64_t>(crack.report.outcome));
+  hash.add_number(static_cast<std::uint64_t>(crack.report.level));
+  hash.add(crack.growth.sheet.position), hash.add(crack.growth.sheet.triangles);
+  for (const SurfaceMesh& f : crack.cut.fragments) hash.add_number(campaign::hash_of(f));
+  return hash.value();
+}
+
+}  // namespace
+
+const char* to_string(CrackOutcome outcome) {
+  switch (outcome) {
+    case CrackOutcome::kSeparated:
+      return "separated";
+    case CrackOutcome::kPierced:
+      return "pierced";
+    case CrackOutcome::kArrested:
+      return "arrested";
+    case CrackOutcome::kRejected:
+      return "rejected";
+    case CrackOutcome::kDropped:
+      return "dropped";
+  }
+  return "";
+}
+
+Crack run_crack(const Specimen& s, const FunctionField& field, const CrackSeed& seed, const GrowthOptions& options) {
+  Crack crack;
+  CrackReport& r = crack.report;
+  const std::uint64_t before = campaign::hash_of(s.mesh());
+  const std::size_t asked = field.evaluations;
+  try {
+    const bool accepted = grow_and_cut(s, field, seed, options, crack);
+    const Stopwatch watch(r.check_s);
+    if (accepted)
+      judge(s, options, crack);
+    else if (r.reason.empty())
+      r.invalid = "refused without a reason";
+  } catch (const std::exception& e) {
+    r.outcome = CrackOutcome::kDropped;
+    r.invalid = std::string("threw: ") + e.what();
+  }
+  r.stress_points = field.evaluations - asked;
+  r.body_changed = campaign::hash_of(s.mesh()) != before;
+  r.hash = hash_of(crack);
+  return crack;
+}
+
+}  // namespace sherd::campaign

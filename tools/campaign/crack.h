@@ -1,0 +1,56 @@
+// One crack from seed to fragments, judged by every law it has to obey.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "engine/fracture/grow.h"
+#include "engine/fracture/synthetic_fields.h"
+#include "engine/fragment/cut.h"
+#include "tools/campaign/specimen.h"
+
+namespace sherd::campaign {
+
+enum class CrackOutcome {
+  kSeparated,  // went through, and cut the body in two or more
+  kPierced,    // went through a handle: the body is whole, with one handle less
+  kArrested,   // stopped inside: a notch
+  kRejected,   // the seed opens no crack
+  kDropped,    // growth, slab or cut refused: the body stays as it was
+};
+const char* to_string(CrackOutcome outcome);
+
+struct CrackReport {
+  CrackOutcome outcome = CrackOutcome::kDropped;
+  int level = 0;        // of the retry ladder
+  std::string reason;   // of a rejection, a drop or a ladder level above 0
+  std::string invalid;  // a law that the accepted result breaks; empty: none
+  bool body_changed = false;
+  std::size_t sheet_triangles = 0, steps = 0, fragments = 0, touched = 0, stress_points = 0;
+  int jitters = 0;
+  Real area = 0, removed_volume = 0;  // of the crack inside the body, m^2; of body and slab together, m^3
+  Real balance = 0;                   // |V(body) - V(fragments) - removed - dust| / V(body)
+  Real grow_s = 0, cut_s = 0, check_s = 0;
+  std::uint64_t hash = 0;  // of the outcome, the sheet and the fragments
+};
+
+struct Crack {
+  CrackReport report;
+  GrowthResult growth;
+  SurfaceMesh slab;
+  CutResult cut;  // of a crack that was not rejected or dropped
+};
+
+// Grows, thickens, cuts and checks. An exception is an invalid result, never thrown on.
+Crack run_crack(const Specimen& specimen, const FunctionField& field, const CrackSeed& seed,
+                const GrowthOptions& options);
+
+// The laws S1-S5 and L1 of a grown sheet and of its slab: the first that is broken, or an empty text.
+std::string check_sheet_laws(const GrowthResult& growth, const TriangleBvh& body, Real thickness);
+// The laws B1-B4 and V1 of a cut.
+std::string check_cut_laws(const CutBody& body, const CutResult& cut);
+// |V(body) - V(fragments) - V(removed) - V(dust)| / V(body)
+Real balance_of(const CutBody& body, const CutResult& cut);
+// Area of the whole sheet, m^2.
+Real sheet_area(const CrackSheet& sheet);
+
+}  // namespace sherd::campaign
