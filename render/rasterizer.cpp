@@ -24,11 +24,13 @@ namespace {
 
 constexpr int kShadowTexels = 2048;
 constexpr int kGroundSectors = 64;
-constexpr int kLargestSide = 8192;      // pixels
-constexpr Real kGroundReach = 5;        // eye distances from the target to where the ground has become sky
-constexpr Real kShadowReach = 12;       // eye distances from the target within which bodies cast shadows
-constexpr Real kOcclusionRadius = 0.1;  // of the picture's height at the target
-constexpr Real kSunTangent = 0.07;      // half-width of the sun seen from the scene: a large, soft lamp
+constexpr int kLargestSide = 8192;               // pixels
+constexpr Real kGroundReach = 5;                 // eye distances from the target to where the ground has become sky
+constexpr Real kShadowReach = 12;                // eye distances from the target within which bodies cast shadows
+constexpr Real kOcclusionRadius = 0.1;           // of the picture's height at the target
+constexpr Real kSunTangent = 0.07;               // half-width of the sun seen from the scene: a large, soft lamp
+const Vec3 kEdgeColour{0.03, 0.035, 0.05};       // of a wireframe's lines
+constexpr Real kEdge = 0.75, kFaintEdge = 0.15;  // their opacity
 
 // Texture units.
 constexpr int kShadowDepthUnit = 0, kShadowCompareUnit = 1, kOcclusionUnit = 2, kInputUnit = 3;
@@ -183,6 +185,7 @@ struct Rasterizer::Impl {
     gl::Program sky{"sky", shaders::screen_vertex(), shaders::sky_fragment()};
     gl::Program body{"body", shaders::body_vertex(), shaders::surface_fragment()};
     gl::Program ground{"ground", shaders::ground_vertex(), shaders::surface_fragment()};
+    gl::Program edges{"edges", shaders::body_vertex(), shaders::edge_fragment()};
     gl::Program finish{"finish", shaders::screen_vertex(), shaders::finish_fragment()};
   };
 
@@ -228,6 +231,7 @@ struct Rasterizer::Impl {
   void set_surface(const gl::Program& program) const;
   void pass_surface() const;
   void pass_translucent() const;
+  void pass_edges() const;
   Image pass_finish() const;
 };
 
@@ -405,6 +409,32 @@ void Rasterizer::Impl::pass_translucent() const {
   glDisable(GL_BLEND);
 }
 
+// Triangles once more as lines, a little nearer to the eye than their faces.
+void Rasterizer::Impl::pass_edges() const {
+  const gl::Program& program = programs->edges;
+  program.use();
+  program.set("u_view_projection", camera.view_projection);
+  program.set("u_colour", kEdgeColour);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+  glEnable(GL_POLYGON_OFFSET_LINE);
+  glPolygonOffset(-1.0f, -2.0f);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  for (const Placed& body : bodies) {
+    program.set("u_rotation", body.body->rotation);
+    program.set("u_translation", body.translation);
+    program.set("u_opacity", body.translucent() ? kFaintEdge : kEdge);
+    body.buffer->draw_original();
+    program.set("u_opacity", kEdge);
+    body.buffer->draw_crack();
+  }
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  glDisable(GL_POLYGON_OFFSET_LINE);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
 Image Rasterizer::Impl::pass_finish() const {
   if (targets->multisampled) {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, targets->multisampled->framebuffer());
@@ -444,6 +474,7 @@ Image Rasterizer::render(const Frame& frame, const View& view) {
   r.pass_occlusion();
   r.pass_surface();
   r.pass_translucent();
+  if (view.wireframe) r.pass_edges();
   return r.pass_finish();
 }
 

@@ -268,6 +268,15 @@ void main() {
 )";
 }
 
+std::string edge_fragment() {
+  return std::string(kVersion) + R"(
+uniform vec3 u_colour;
+uniform float u_opacity;
+out vec4 o_colour;
+void main() { o_colour = vec4(u_colour * u_opacity, u_opacity); }
+)";
+}
+
 std::string sky_fragment() {
   return std::string(kVersion) + kSky + R"(
 in vec2 v_uv;

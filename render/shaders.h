@@ -12,6 +12,7 @@ std::string geometry_fragment();  // view-space normal and distance, for the occ
 std::string occlusion_fragment();
 std::string blur_fragment();
 std::string surface_fragment();  // bodies and ground, linear light
+std::string edge_fragment();     // one colour, blended
 std::string sky_fragment();
 std::string finish_fragment();  // tone curve, box filter, sRGB
 

@@ -36,6 +36,7 @@ struct View {
   Vec3 eye{0, 1, 3}, target{0, 0, 0}, up{0, 1, 0};
   Real field_of_view = 40;       // vertical, degrees
   Vec3 light{0.5, 1.0, 0.4};     // direction towards the sun, world, any length > 0
+  bool wireframe = false;        // draw the edges of the triangles over the bodies
   bool ground = true;            // draw the plane y = ground_height and shadows on it
   Real ground_height = 0;        // m
   Colour ground_colour{0.62f, 0.60f, 0.57f};

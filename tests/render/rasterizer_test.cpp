@@ -188,6 +188,29 @@ TEST(Rasterizer, ATranslucentBodyShowsTheCrackInside) {
   EXPECT_GT(redness(0.25f), 60);
 }
 
+// A box's front face is two triangles when its edge is the whole side: its diagonal runs through the middle.
+TEST(Rasterizer, AWireframeDarkensEdgesAndNothingElse) {
+  Rasterizer rasterizer;
+  Frame frame;
+  frame.bodies = {body_of(make_box({2, 2, 2}, 2), 0)};
+  View view = plain_view(200, 200);
+  const Image plain = rasterizer.render(frame, view);
+  view.wireframe = true;
+  const Image wired = rasterizer.render(frame, view);
+  std::size_t darker = 0, changed_off_edges = 0;
+  for (int y = 0; y < 200; ++y)
+    for (int x = 0; x < 200; ++x) {
+      const double change = brightness(wired, x, y) - brightness(plain, x, y);
+      EXPECT_LT(change, 2);
+      const bool middle = std::abs(x - 99.5) < 50 && std::abs(y - 99.5) < 50;
+      const bool diagonal = std::abs(std::abs(x - 99.5) - std::abs(y - 99.5)) < 3;
+      if (middle && change < -30) ++darker;
+      if (middle && !diagonal && std::abs(change) > 2) ++changed_off_edges;
+    }
+  EXPECT_GT(darker, 90u);  // the diagonal crosses 100 rows there
+  EXPECT_EQ(changed_off_edges, 0u);
+}
+
 TEST(Rasterizer, AMovedPoseMovesThePicture) {
   Rasterizer rasterizer;
   Frame frame;

@@ -23,6 +23,7 @@ struct RunOptions {
   int threads = 0;            // 0: all processors
   int frames = 0;             // stop after so many; 0: the scene's duration
   bool render = true;
+  bool wireframe = false;  // edges of the triangles over the bodies, in every picture
   bool quiet = false;
 };
 int run_command(const RunOptions& options);

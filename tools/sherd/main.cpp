@@ -33,6 +33,7 @@ void add_run(CLI::App& app, Choice& choice) {
       ->check(CLI::Range(1, 1024));
   run->add_option("--frames", choice.run.frames, "Stop after so many frames")->check(CLI::Range(1, 1000000));
   run->add_flag("--no-render", choice.no_render, "No pictures and no movie");
+  run->add_flag("--wireframe", choice.run.wireframe, "Draw the edges of the triangles over the bodies");
   run->add_flag("--quiet", choice.run.quiet, "Only errors");
 }
 

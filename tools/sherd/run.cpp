@@ -11,8 +11,10 @@ namespace sherd {
 namespace {
 
 // At each due frame (the start is one) a snapshot goes to the writer, until the end, the frame limit or Ctrl-C.
-void simulate(Simulation& simulation, RunWriter& writer, std::size_t frame_limit, bool material, Progress& progress) {
-  const View view = simulation.view();
+void simulate(Simulation& simulation, RunWriter& writer, std::size_t frame_limit, bool material, bool wireframe,
+              Progress& progress) {
+  View view = simulation.view();
+  view.wireframe |= wireframe;
   std::size_t bodies = 0;
   for (;;) {
     for (const std::string& message : simulation.take_messages()) progress.note(message);
@@ -21,7 +23,11 @@ void simulate(Simulation& simulation, RunWriter& writer, std::size_t frame_limit
       const Frame frame = simulation.snapshot();
       bodies = frame.bodies.size();
       writer.add(frame, view);
-      if (material) writer.add_material(simulation.material_snapshot(), simulation.material_view());
+      if (material) {
+        View material_view = simulation.material_view();
+        material_view.wireframe |= wireframe;
+        writer.add_material(simulation.material_snapshot(), material_view);
+      }
     }
     progress.update(simulation.time(), bodies, writer.frames());
     if (simulation.done() || interrupted() || writer.frames() >= frame_limit) return;
@@ -47,7 +53,8 @@ int run_command(const RunOptions& options) {
   Progress progress(duration, options.quiet);
   std::exception_ptr failure;
   try {
-    simulate(simulation, writer, frame_limit, writer.draws() && scene.output.material_view.has_value(), progress);
+    simulate(simulation, writer, frame_limit, writer.draws() && scene.output.material_view.has_value(),
+             options.wireframe, progress);
   } catch (...) {
     failure = std::current_exception();  // what there is so far is written before it goes on
   }
