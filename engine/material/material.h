@@ -13,8 +13,8 @@ namespace sherd {
 // thickness >= 0, 0 <= restitution <= 1, friction >= 0.
 struct Material {
   std::string name = "ceramic";
-  Real density = 2400;               // kg/m^3
-  Real young = 70e9;                 // Pa
+  Real density = 2400;  // kg/m^3
+  Real young = 70e9;    // Pa
   Real poisson = 0.22;
   Real strength = 40e6;              // tensile stress that starts a crack (Rankine), Pa
   Real propagation_strength = 10e6;  // tensile stress that keeps it growing, Pa
@@ -30,7 +30,11 @@ struct MaterialPreset {
 std::span<const MaterialPreset> material_presets();
 std::optional<Material> find_material(std::string_view name);
 
-inline Real shear_modulus(const Material& m) { return m.young / (2 * (1 + m.poisson)); }
-inline Real lame_lambda(const Material& m) { return m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson)); }
+inline Real shear_modulus(const Material& m) {
+  return m.young / (2 * (1 + m.poisson));
+}
+inline Real lame_lambda(const Material& m) {
+  return m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson));
+}
 
 }  // namespace sherd

@@ -101,21 +101,6 @@ Vec3 read_rotation(TableReader& body) {
   return rotation;
 }
 
-std::filesystem::path read_mesh_path(TableReader& body, const TomlValue& value, const std::filesystem::path& folder) {
-  const std::string path = body.path("mesh");
-  if (value.kind != TomlValue::Kind::kText || value.text.empty()) {
-    body.problems().refuse(value, path, "type: the path of a mesh file, in quotes");
-    return {};
-  }
-  const std::filesystem::path file = (folder / value.text).lexically_normal();
-  std::error_code error;
-  if (!std::filesystem::exists(file, error))
-    body.problems().refuse(value, path, fmt::format("files: one that exists ({} does not)", file.string()));
-  else if (std::filesystem::is_directory(file, error))
-    body.problems().refuse(value, path, fmt::format("files: a mesh file ({} is a folder)", file.string()));
-  return file;
-}
-
 MeshSpec read_mesh(TableReader& body, const TomlValue& value, const std::filesystem::path& folder) {
   MeshSpec mesh;
   mesh.file = read_mesh_path(body, value, folder);
@@ -136,33 +121,31 @@ MeshSpec read_mesh(TableReader& body, const TomlValue& value, const std::filesys
   return mesh;
 }
 
-// Where each number of a material goes and what it may be.
-struct MaterialKey {
-  std::string_view key;
-  Real Material::*member;
-  Range range;
-};
-constexpr std::array<MaterialKey, 8> kMaterialKeys{{
-    {"density", &Material::density, {10, 30000, "kg/m^3"}},
-    {"young", &Material::young, {1e5, 2e12, "Pa"}},
-    {"poisson", &Material::poisson, {-1, 0.5, "", true, true}},
-    {"strength", &Material::strength, {1e2, 1e12, "Pa"}},
-    {"propagation_strength", &Material::propagation_strength, {1, 1e12, "Pa"}},
-    {"crack_thickness", &Material::crack_thickness, {0, 1, "m"}},
-    {"restitution", &Material::restitution, {0, 1}},
-    {"friction", &Material::friction, {0, 10}},
-}};
+}  // namespace
 
-Material read_preset(const TomlValue& value, const std::string& path, Problems& problems) {
-  if (value.kind == TomlValue::Kind::kText)
-    if (const std::optional<Material> found = find_material(value.text)) return *found;
-  std::vector<std::string_view> names;
-  for (const MaterialPreset& preset : material_presets()) names.push_back(preset.material.name);
-  problems.refuse(value, path, fmt::format("values: {}", word_list(names)));
-  return {};
+Vec3 read_direction(TableReader& reader, std::string_view key, const Vec3& fallback) {
+  const TomlValue* given = reader.find(key);
+  if (!given) return fallback;
+  const Vec3 v = reader.vector(key, {-1e6, 1e6}, {0, 1, 0});
+  if (norm2(v) > 0) return v;
+  reader.problems().refuse(*given, reader.path(key), "range: a direction, not zero");
+  return {0, 1, 0};
 }
 
-}  // namespace
+std::filesystem::path read_mesh_path(TableReader& body, const TomlValue& value, const std::filesystem::path& folder) {
+  const std::string path = body.path("mesh");
+  if (value.kind != TomlValue::Kind::kText || value.text.empty()) {
+    body.problems().refuse(value, path, "type: the path of a mesh file, in quotes");
+    return {};
+  }
+  const std::filesystem::path file = (folder / value.text).lexically_normal();
+  std::error_code error;
+  if (!std::filesystem::exists(file, error))
+    body.problems().refuse(value, path, fmt::format("files: one that exists ({} does not)", file.string()));
+  else if (std::filesystem::is_directory(file, error))
+    body.problems().refuse(value, path, fmt::format("files: a mesh file ({} is a folder)", file.string()));
+  return file;
+}
 
 std::optional<Vec3> read_colour(TableReader& reader, std::string_view key) {
   const TomlValue* value = reader.find(key);
@@ -183,33 +166,7 @@ std::optional<Vec3> read_colour(TableReader& reader, std::string_view key) {
   return colour;
 }
 
-Material read_material(const TomlValue& value, const std::string& path, Problems& problems) {
-  if (value.kind == TomlValue::Kind::kText) return read_preset(value, path, problems);
-  if (value.kind != TomlValue::Kind::kTable) {
-    problems.refuse(value, path, "type: a preset's name or a table");
-    return {};
-  }
-  TableReader reader(value, path, problems);
-  const TomlValue* preset = reader.find("preset");
-  Material material = preset ? read_preset(*preset, reader.path("preset"), problems) : Material{};
-  material.name = reader.text("name", material.name);
-  bool good = true;
-  for (const MaterialKey& key : kMaterialKeys) {
-    material.*key.member = reader.number(key.key, key.range, material.*key.member);
-    const TomlValue* given = reader.find(key.key);
-    good = good && (!given || key.range.contains(given->real));
-  }
-  const TomlValue* given = reader.find("propagation_strength");
-  if (good && material.propagation_strength > material.strength)
-    problems.refuse(
-        given ? *given : *reader.find("strength"), reader.path(given ? "propagation_strength" : "strength"),
-        given ? fmt::format("range 1 to {:g} Pa, the strength", material.strength)
-              : fmt::format("range {:g} to 1e+12 Pa, from the propagation_strength", material.propagation_strength));
-  reader.finish();
-  return material;
-}
-
-SceneBody read_body(const TomlValue& value, const std::filesystem::path& folder, Problems& problems) {
+SceneBody read_body(const TomlValue& value, const std::filesystem::path& folder, Real duration, Problems& problems) {
   TableReader reader(value, "body", problems);
   SceneBody body;
   body.name = read_name(reader);
@@ -239,7 +196,8 @@ SceneBody read_body(const TomlValue& value, const std::filesystem::path& folder,
   body.velocity = reader.vector("velocity", kSpeed, {});
   body.angular_velocity = reader.vector("angular_velocity", {-1e5, 1e5, "rad/s"}, {});
   const TomlValue* material = reader.find("material");
-  body.material = material ? read_material(*material, reader.path("material"), problems) : *find_material("ceramic");
+  body.material = *find_material("ceramic");
+  if (material) read_material(*material, reader.path("material"), problems, body);
   body.fixed = reader.flag("fixed", false);
   body.breakable = reader.flag("breakable", !body.fixed);
   for (const auto& [key, speed] : {std::pair{"velocity", body.velocity}, {"angular_velocity", body.angular_velocity}})
@@ -247,6 +205,7 @@ SceneBody read_body(const TomlValue& value, const std::filesystem::path& folder,
       problems.refuse(*reader.find(key), reader.path(key), "values: [0, 0, 0], since the body is fixed");
   if (body.fixed && body.breakable)
     problems.refuse(*reader.find("breakable"), reader.path("breakable"), "values: false, since the body is fixed");
+  read_cracks(reader, folder, duration, body);
   body.colour = read_colour(reader, "colour");
   body.crack_colour = read_colour(reader, "crack_colour");
   reader.finish();

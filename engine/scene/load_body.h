@@ -6,11 +6,23 @@
 
 namespace sherd {
 
-// Mesh paths are looked for in `folder` first.
-SceneBody read_body(const TomlValue& value, const std::filesystem::path& folder, Problems& problems);
-// A preset's name, or a table with `preset` and changes to it.
-Material read_material(const TomlValue& value, const std::string& path, Problems& problems);
+// Mesh paths are relative to `folder`; `duration`: of the scene, s.
+SceneBody read_body(const TomlValue& value, const std::filesystem::path& folder, Real duration, Problems& problems);
+// A preset's name, or a table with `preset` and changes to it, numbers or fields.
+void read_material(const TomlValue& value, const std::string& path, Problems& problems, SceneBody& body);
+// A table with `kind`; `path` names it. `mean`: where none is given. `whole`: whether "share" is allowed. Every value
+// of the field lies in `range`. Nothing after a problem.
+std::optional<FieldSpec> read_field(const TomlValue& value, const std::string& path, const Range& range, Real mean,
+                                    bool whole, Problems& problems);
+// The arrays `crack` and `notch` of a body.
+void read_cracks(TableReader& body, const std::filesystem::path& folder, Real duration, SceneBody& out);
+// The array `load` of the root; bodies are read.
+void read_loads(TableReader& root, Scene& scene);
+// The key `mesh`, with the value given: an existing file, relative to `folder`.
+std::filesystem::path read_mesh_path(TableReader& reader, const TomlValue& value, const std::filesystem::path& folder);
 ShapeSpec read_shape(const TomlValue& value, const std::string& path, Problems& problems);
+// A direction as it is given, never zero; absent: `fallback`.
+Vec3 read_direction(TableReader& reader, std::string_view key, const Vec3& fallback);
 // "#rrggbb" (sRGB) or [r, g, b] (linear, 0..1); result linear.
 std::optional<Vec3> read_colour(TableReader& reader, std::string_view key);
 

@@ -28,13 +28,6 @@ std::optional<Real> read_hertz_or(TableReader& reader, std::string_view key, con
   return std::nullopt;
 }
 
-Vec3 read_direction(TableReader& reader, std::string_view key, const Vec3& fallback) {
-  const Vec3 v = reader.vector(key, {-1e6, 1e6}, fallback);
-  if (norm2(v) > 0) return v;
-  reader.problems().refuse(*reader.find(key), reader.path(key), "range: a direction, not zero");
-  return fallback;
-}
-
 void read_time(TableReader& root, Scene& scene) {
   scene.gravity = root.vector("gravity", {-1000, 1000, "m/s^2"}, scene.gravity);
   scene.time_step = root.number("time_step", {1e-6, 0.1, "s"}, scene.time_step);
@@ -58,7 +51,7 @@ void read_bodies(TableReader& root, Scene& scene) {
     return;
   }
   for (const TomlValue& item : list->items) {
-    scene.bodies.push_back(read_body(item, scene.file.parent_path(), problems));
+    scene.bodies.push_back(read_body(item, scene.file.parent_path(), scene.duration, problems));
     const std::string& name = scene.bodies.back().name;
     const auto same = [&](const SceneBody& b) { return b.name == name; };
     if (name.empty() || std::find_if(scene.bodies.begin(), scene.bodies.end(), same) == scene.bodies.end() - 1)
@@ -99,6 +92,10 @@ void read_world(TableReader& root, Scene& scene) {
     f.min_fragment_volume = r.number("min_fragment_volume", {0, 0.5}, f.min_fragment_volume);
     f.max_generation = r.integer("max_generation", 0, 1000, f.max_generation);
     f.net_section = r.flag("net_section", f.net_section);
+    f.rounds = r.integer("rounds", 1, 8, f.rounds);
+    f.interior_seeds = r.flag("interior_seeds", f.interior_seeds);
+    constexpr std::array<std::string_view, 2> kDust{"drop", "keep"};  // in the order of SceneDust
+    f.dust = static_cast<SceneDust>(r.choice("dust", kDust, 0));
     f.speed = r.number("speed", {0.05, 1}, f.speed);
   });
 }
@@ -159,6 +156,7 @@ Scene load_scene(const std::filesystem::path& file) {
   scene.file = file;
   read_time(root, scene);
   read_bodies(root, scene);
+  read_loads(root, scene);
   read_world(root, scene);
   read_view(root, scene);
   read_output(root, scene);

@@ -166,6 +166,34 @@ const TomlValue* TableReader::table(std::string_view key) {
   return nullptr;
 }
 
+std::optional<std::vector<Real>> TableReader::numbers(std::string_view key, const Range& range, std::size_t least) {
+  std::vector<Real> all;
+  const TomlValue* value = find(key);
+  if (!value) return all;
+  if (value->kind != TomlValue::Kind::kArray || value->items.size() < least) {
+    problems_->refuse(*value, path(key), fmt::format("type: numbers [a, b, ...], {} or more", least));
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < value->items.size(); ++i)
+    if (const auto x = to_number(value->items[i], fmt::format("{}[{}]", path(key), i), range, *problems_))
+      all.push_back(*x);
+  return all.size() == value->items.size() ? std::optional(all) : std::nullopt;
+}
+
+std::vector<const TomlValue*> TableReader::tables(std::string_view key) {
+  std::vector<const TomlValue*> all;
+  const TomlValue* value = find(key);
+  if (!value) return all;
+  bool good = value->kind == TomlValue::Kind::kArray;
+  for (const TomlValue& item : value->items) {
+    good = good && item.kind == TomlValue::Kind::kTable;
+    all.push_back(&item);
+  }
+  if (good) return all;
+  problems_->refuse(*value, path(key), fmt::format("type: tables, each begun by [[{}]]", path(key)));
+  return {};
+}
+
 void TableReader::finish() {
   const std::vector<std::string_view> known(known_.begin(), known_.end());
   for (const TomlEntry& entry : table_->entries) {

@@ -53,6 +53,10 @@ class TableReader {
   std::size_t choice(std::string_view key, std::span<const std::string_view> words, std::size_t fallback);
   // The value must be a table; null otherwise.
   const TomlValue* table(std::string_view key);
+  // An array of numbers; nothing (and a problem) when it is none or has fewer than `least`; empty when absent.
+  std::optional<std::vector<Real>> numbers(std::string_view key, const Range& range, std::size_t least);
+  // The tables of an array [[key]], none when absent; anything else is a problem.
+  std::vector<const TomlValue*> tables(std::string_view key);
   // Unknown keys are problems, with the nearest known one. Call after all getters.
   void finish();
 

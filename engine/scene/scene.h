@@ -2,11 +2,14 @@
 // SI units; world: right-handed, y up.
 #pragma once
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "engine/material/field_spec.h"
+#include "engine/material/guide_spec.h"
 #include "engine/material/material.h"
 #include "engine/mesh/load.h"
 #include "engine/mesh/surface_mesh.h"
@@ -65,6 +68,19 @@ enum class Anchor {
 
 inline constexpr Real kDefaultEdge = 1.0 / 40;  // edge length where none is given, of the bounding-box diagonal
 
+// A crack that follows a guide, whatever the stress.
+struct SceneCrack {
+  // Material space (after scaling). A path: a mesh file in the coordinates of the body's own file (metres for a shape).
+  std::variant<GuidePlane, GuidePolyline, std::filesystem::path> guide;
+  Real time = 0;  // s; when it happens, 0: before the first step
+};
+
+// A wedge cut out of the body before the first step: `width` wide at the surface, its tip at the guide's depth.
+struct SceneNotch {
+  NotchSpec guide;
+  Real width = 0;  // m
+};
+
 struct SceneBody {
   std::string name;  // unique; letters, digits, '_' and '-', so that it can name files
   std::variant<MeshSpec, ShapeSpec> source;
@@ -76,7 +92,11 @@ struct SceneBody {
   Vec3 rotation;          // rotation vector (unit axis times angle), radians, material to world
   Vec3 velocity;          // of the centre of mass, m/s
   Vec3 angular_velocity;  // rad/s, world
-  Material material;      // resolved: preset with the scene's changes
+  Material material;      // resolved: preset with the scene's changes; means where a field varies
+  // Nothing: the material's number everywhere.
+  std::optional<FieldSpec> strength, propagation_strength, crack_thickness;
+  std::vector<SceneCrack> cracks;
+  std::vector<SceneNotch> notches;
   bool fixed = false;
   bool breakable = true;       // false for every fixed body
   std::optional<Vec3> colour;  // linear RGB, 0..1; nothing: the renderer chooses
@@ -111,6 +131,12 @@ struct SceneSolver {
   ThinWalls thin_walls = ThinWalls::kAuto;
 };
 
+// What becomes of pieces below SceneFracture::min_fragment_volume.
+enum class SceneDust {
+  kDrop,  // they vanish; their volume is recorded
+  kKeep,  // they stay as pieces that do not break
+};
+
 struct SceneFracture {
   bool enabled = true;
   int max_cracks = 8;               // per body and event
@@ -118,7 +144,21 @@ struct SceneFracture {
   Real min_fragment_volume = 1e-4;  // of the scene body's volume; smaller pieces neither appear nor break
   int max_generation = 4;           // a fragment of this generation breaks no further (scene bodies are generation 0)
   bool net_section = true;          // a stopped crack goes through when the rest of its section cannot bear the load
-  Real speed = 0.5;                 // fraction of an edge a front moves per sub-step at the initiation strength (alpha)
+  int rounds = 1;  // times an event solves anew on the pieces that still bear the load: cracks that follow from cracks
+  bool interior_seeds = false;  // also start cracks inside, where the stress exceeds the strength most
+  SceneDust dust = SceneDust::kDrop;
+  Real speed = 0.5;  // fraction of an edge a front moves per sub-step at the initiation strength (alpha)
+};
+
+// Forces on an unbroken scene body beside those of contacts: they stress it (and may break it) but do not move it.
+struct SceneLoad {
+  std::size_t body = 0;  // index in Scene::bodies, a breakable one
+  Box region;            // material space, m: acts on the original surface inside
+  Vec3 facing;           // only on faces within 45 degrees of this direction (unit); zero: on any
+  Vec3 force;            // N, material axes, spread evenly over the region
+  Vec3 moment;           // N m, material axes, a couple: spread as w x (x - centroid of the region)
+  Real from = 0;         // s
+  Real until = std::numeric_limits<Real>::infinity();  // s, exclusive
 };
 
 struct SceneCamera {
@@ -146,6 +186,7 @@ struct Scene {
   Real duration = 2;           // s
   Real frame_rate = 60;        // frames per second of simulated time, at most one a step
   std::vector<SceneBody> bodies;
+  std::vector<SceneLoad> loads;
   SceneGround ground;
   SceneContact contact;
   SceneSolver solver;
@@ -162,6 +203,12 @@ Scene load_scene(const std::filesystem::path& file);
 // The body's mesh about its own origin, before remeshing: generated, or loaded, scaled and repaired. `messages` gets a
 // sentence for everything loading and repair changed. Throws InputError naming the file for what cannot be repaired.
 SurfaceMesh scene_mesh(const SceneBody& body, std::vector<std::string>& messages);
+// The material's fields of a body, propagation strength at most the strength at every point. `mesh`: the body's, with
+// its channels. Throws InputError naming the body when a channel is missing.
+MaterialFields scene_fields(const SceneBody& body, const SurfaceMesh& mesh);
+// What a crack is to follow, the mesh file loaded and scaled as the body's own. Throws InputError naming the file when
+// it is no open, consistently oriented surface.
+GuideSpec scene_guide(const SceneBody& body, const SceneCrack& crack, std::vector<std::string>& messages);
 // The body's edge_length, or the default that stands for 0, for the mesh of scene_mesh(); m.
 Real scene_edge_length(const SceneBody& body, const SurfaceMesh& mesh);
 

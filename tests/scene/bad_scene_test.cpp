@@ -11,10 +11,10 @@ TEST_F(BadScene, UnknownKeyNamesTheNearestOne) {
             "scene.toml:4:1: body.postion: unknown key; did you mean 'position'?");
   EXPECT_EQ(problem("time-step = 0.001\n" + kBall),
             "scene.toml:1:1: time-step: unknown key; did you mean 'time_step'?");
-  EXPECT_EQ(
-      problem("zzzzzzzzzz = 60\n" + kBall),
-      "scene.toml:1:1: zzzzzzzzzz: unknown key; known keys: gravity, time_step, duration, frame_rate, body, ground, "
-      "contact, solver, fracture, camera, light, output");
+  EXPECT_EQ(problem("zzzzzzzzzz = 60\n" + kBall),
+            "scene.toml:1:1: zzzzzzzzzz: unknown key; known keys: gravity, time_step, duration, frame_rate, body, "
+            "load, ground, "
+            "contact, solver, fracture, camera, light, output");
   EXPECT_EQ(problem(kBall + "[ground]\nfricton = 1\n"),
             "scene.toml:5:1: ground.fricton: unknown key; did you mean 'friction'?");
 }
@@ -185,12 +185,13 @@ TEST_F(BadScene, ViewsAndOutputMustBePossible) {
 }
 
 TEST_F(BadScene, AllProblemsAreNamedAtOnceInFileOrder) {
-  EXPECT_EQ(problem("time_step = -1\nspeed = 3\n" + kBall + "[output]\nwidth = 1\n"),
-            "scene.toml:1:13: time_step: value -1 not allowed; allowed range 1e-06 to 0.1 s\n"
-            "scene.toml:2:1: speed: unknown key; known keys: gravity, time_step, duration, frame_rate, body, ground, "
-            "contact, "
-            "solver, fracture, camera, light, output\n"
-            "scene.toml:7:9: output.width: value 1 not allowed; allowed range 16 to 8192");
+  EXPECT_EQ(
+      problem("time_step = -1\nspeed = 3\n" + kBall + "[output]\nwidth = 1\n"),
+      "scene.toml:1:13: time_step: value -1 not allowed; allowed range 1e-06 to 0.1 s\n"
+      "scene.toml:2:1: speed: unknown key; known keys: gravity, time_step, duration, frame_rate, body, load, ground, "
+      "contact, "
+      "solver, fracture, camera, light, output\n"
+      "scene.toml:7:9: output.width: value 1 not allowed; allowed range 16 to 8192");
 }
 
 TEST_F(BadScene, SyntaxErrorsNameTheirPlace) {
