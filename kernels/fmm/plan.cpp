@@ -63,6 +63,15 @@ void require_normals(const char* what, bool needed, const Vec3Column* normals, s
       throw InputError(fmt::format("fast multipole method: {} normal {} is not finite", what, i));
 }
 
+// Far below any crossover: such plans do without translations, which take seconds to make at fine tolerances.
+constexpr double kAlwaysDirect = 1e6;
+constexpr std::size_t kDirectLeaf = 128;
+
+ListOptions everything_direct() {
+  constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
+  return {.multipole_from = kNever, .local_from = kNever, .direct_below = kNever};
+}
+
 struct Layout {
   std::unique_ptr<Tree> tree;
   std::size_t leaf_size = 0;
@@ -109,32 +118,34 @@ struct Plan::Impl {
     require_normals("source", first_normal(sum) < shape.strengths, p.source_normals, sources);
     require_normals("target", shape.target_normals, p.target_normals, targets);
     problem.sum = sum, problem.constants = unit_constants(sum, constants, factor);
-    problem.fields = far_fields(sum, problem.constants, accuracy_for(o.tolerance));
+    const TranslationOptions accuracy = accuracy_for(o.tolerance);
+    const double all = static_cast<double>(sources) * static_cast<double>(targets);
+    statistics.direct = o.scheme == Scheme::kDirect || (o.leaf_size == 0 && all <= kAlwaysDirect);
     const bool single_far = o.arithmetic != Arithmetic::kDouble, single_near = o.arithmetic == Arithmetic::kFloat;
     auto start = Clock::now();
-    if (o.scheme == Scheme::kRbfSphere) choose_spheres(o, single_far);
-    const CostModel model = cost_model(sum, problem.fields, single_far, single_near);
-    const auto first = translations(problem.fields[0].translations);
-    for (const FarField& f : problem.fields) statistics.rank.push_back(translations(f.translations)->rank);
+    CostModel model;
+    std::shared_ptr<const Translations> first;
+    ListOptions list_options = everything_direct();
+    if (!statistics.direct) {
+      problem.fields = far_fields(sum, problem.constants, accuracy);
+      if (o.scheme == Scheme::kRbfSphere) choose_spheres(o, single_far);
+      model = cost_model(sum, problem.fields, single_far, single_near);
+      first = translations(problem.fields[0].translations);
+      for (const FarField& f : problem.fields) statistics.rank.push_back(translations(f.translations)->rank);
+      list_options.multipole_from = list_options.local_from = first->inner.size();
+      list_options.direct_below = static_cast<std::size_t>(model.far / model.pair);
+    }
     statistics.translations_seconds = seconds_since(start);
 
     start = Clock::now();
-    ListOptions list_options;
-    list_options.multipole_from = list_options.local_from = first->inner.size();
-    list_options.direct_below = static_cast<std::size_t>(model.far / model.pair);
-    const double all = static_cast<double>(sources) * static_cast<double>(targets);
     PlanOptions layout_options = o;
-    if (o.scheme == Scheme::kDirect && o.leaf_size == 0) layout_options.leaf_size = 128;
+    if (statistics.direct && o.leaf_size == 0) layout_options.leaf_size = kDirectLeaf;
     Layout layout = choose_layout(p, layout_options, model, list_options);
     tree = std::move(layout.tree);
-    statistics.direct = o.scheme == Scheme::kDirect;
     if (!statistics.direct && o.leaf_size == 0) {
       const double planned = cost(model, *tree, count_interactions(*tree, list_options));
       statistics.direct = all * model.pair * 1.1 <= planned;
-    }
-    if (statistics.direct) {
-      constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
-      list_options = {.multipole_from = kNever, .local_from = kNever, .direct_below = kNever};
+      if (statistics.direct) list_options = everything_direct();
     }
     statistics.leaf_size = layout.leaf_size;
     statistics.tree_seconds = seconds_since(start);
@@ -146,7 +157,7 @@ struct Plan::Impl {
     for (Tree::Index b = 0; b < tree->box_count(); ++b) statistics.leaves += tree->leaf(b) ? 1 : 0;
     refuse_too_large(o, counts, single_far, single_near);
     lists = std::make_unique<InteractionLists>(*tree, list_options);
-    schedule = std::make_unique<Schedule>(*tree, *lists, *first);
+    schedule = std::make_unique<Schedule>(*tree, *lists, first.get());
     statistics.lists_seconds = seconds_since(start);
 
     start = Clock::now();

@@ -31,7 +31,7 @@ const char* task_name(TaskKind kind) {
   }
 }
 
-Schedule::Schedule(const Tree& tree, const InteractionLists& lists, const Translations& translations) {
+Schedule::Schedule(const Tree& tree, const InteractionLists& lists, const Translations* translations) {
   for (int l = 0; l < tree.level_count(); ++l) {
     const Tree::Index first = tree.level_begin[static_cast<std::size_t>(l)],
                       last = tree.level_begin[static_cast<std::size_t>(l) + 1];
@@ -44,7 +44,7 @@ Schedule::Schedule(const Tree& tree, const InteractionLists& lists, const Transl
   parallel_for(chunks_.size(), 1, [&](std::size_t c) {
     std::size_t at = exchanges_.begin[c];
     for (Tree::Index b = chunks_[c].begin; b < chunks_[c].end; ++b)
-      for (const FarPair& p : lists.far[b]) exchanges_.item[at++] = exchange(p, b, translations);
+      for (const FarPair& p : lists.far[b]) exchanges_.item[at++] = exchange(p, b, *translations);
     std::stable_sort(exchanges_.item.begin() + static_cast<std::ptrdiff_t>(exchanges_.begin[c]),
                      exchanges_.item.begin() + static_cast<std::ptrdiff_t>(at),
                      [](const FarExchange& a, const FarExchange& b) { return a.matrix < b.matrix; });

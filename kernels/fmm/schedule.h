@@ -24,7 +24,8 @@ struct FarExchange {
 
 class Schedule {
  public:
-  Schedule(const Tree& tree, const InteractionLists& lists, const Translations& translations);
+  // translations: null where the lists name no far pairs.
+  Schedule(const Tree& tree, const InteractionLists& lists, const Translations* translations);
 
   struct Task {
     TaskKind kind;
