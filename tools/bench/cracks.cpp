@@ -4,6 +4,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "engine/mesh/write.h"
+#include "tools/campaign/generations.h"
+
 namespace sherd::bench {
 namespace {
 
@@ -20,9 +23,34 @@ void print_troubled(const ShapeResult& result) {
   }
 }
 
+int run_generation_study(const CracksOptions& o) {
+  nlohmann::json shapes = nlohmann::json::array();
+  std::printf("%s\n", generation_header().c_str());
+  int status = 0;
+  for (const std::string& name : o.shapes.empty() ? specimen_names() : o.shapes) {
+    const auto specimen = make_specimen(name, o.meshes);
+    if (!specimen) continue;
+    GenerationOptions options;
+    options.seed = o.campaign.seed, options.thickness = o.campaign.thickness;
+    const GenerationResult result = run_generations(*specimen, options);
+    std::printf("%s", to_text(result).c_str());
+    for (const std::string& text : result.warnings) std::printf("  %s\n", text.c_str());
+    std::fflush(stdout);
+    for (const GenerationRow& row : result.rows)
+      if (row.invalid || row.certified < row.pieces) status = 1;
+    if (!o.pieces.empty())
+      for (std::size_t i = 0; i < result.pieces.size(); ++i)
+        write_ply(result.pieces[i], o.pieces + "/" + name + "_" + std::to_string(i) + ".ply", PlyPrecision::kDouble);
+    shapes.push_back(to_json(result));
+  }
+  if (!o.json.empty()) std::ofstream(o.json) << nlohmann::json{{"generations", shapes}}.dump(1) << "\n";
+  return status;
+}
+
 }  // namespace
 
 int run_cracks(const CracksOptions& o) {
+  if (o.generations) return run_generation_study(o);
   nlohmann::json shapes = nlohmann::json::array();
   std::printf("%s\n", table_header().c_str());
   int status = 0;

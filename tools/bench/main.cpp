@@ -171,6 +171,10 @@ CLI::App* add_cracks(CLI::App& app, CracksCommand& c) {
   cracks->add_option("--meshes", c.options.meshes, "folder of the statues; absent ones are skipped")
       ->capture_default_str();
   cracks->add_flag("--log", c.options.log, "a line for each crack that left the true field");
+  cracks->add_flag("--generations", c.options.generations,
+                   "three generations on all pieces, remeshed in between, to 64 pieces and more, then each solved");
+  cracks->add_option("--pieces", c.options.pieces, "with --generations: folder for the pieces")
+      ->check(CLI::ExistingDirectory);
   cracks->add_option("--threads", c.threads, "0: all; 1 for times")->check(CLI::NonNegativeNumber);
   cracks->add_option("--json", c.options.json, "file for the numbers");
   cracks->footer(

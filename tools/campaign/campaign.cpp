@@ -90,7 +90,7 @@ JobResult run_job(const Specimen& s, FieldKind kind, std::size_t index, const Ca
           return stress;
         },
         o.sign);
-    Crack crack = run_crack(s, field, s.seed_at(job.vertex, field), growth);
+    Crack crack = run_crack(s, field, s.seed_at(job.vertex, field), growth, o.min_fragment_volume);
     job.report = crack.report;
     if (out) *out = std::move(crack);
     if (job.report.outcome != CrackOutcome::kRejected || !job.report.invalid.empty()) return job;

@@ -17,14 +17,15 @@ struct CampaignOptions {
   std::vector<FieldKind> fields = all_fields();
   std::size_t first = 0, count = 200;  // jobs of each shape and field; job i is the same whatever these are
   std::uint64_t seed = 1;
-  Real arrest_share = 0.2;    // of jobs whose stress decays within 1 to 4 h of the seed
-  Real rotation = 2;          // rad per diagonal
-  Real noise = 0.3;           // amplitude of each of three waves
-  Real noise_wavelength = 8;  // in h
-  Real thickness = 1e-3;      // of the diagonal
-  Real overshoot = 0.15;      // of h
-  Real edge = 1;              // of the sheet, in mean edges of the body
-  Real sign = 1;              // of all eigenvectors
+  Real arrest_share = 0.2;          // of jobs whose stress decays within 1 to 4 h of the seed
+  Real rotation = 2;                // rad per diagonal
+  Real noise = 0.3;                 // amplitude of each of three waves
+  Real noise_wavelength = 8;        // in h
+  Real thickness = 1e-3;            // of the diagonal
+  Real overshoot = 0.15;            // of h
+  Real edge = 1;                    // of the sheet, in mean edges of the body
+  Real min_fragment_volume = 1e-5;  // of the body's; smaller is dust
+  Real sign = 1;                    // of all eigenvectors
 };
 
 struct JobResult {

@@ -9,14 +9,21 @@
 namespace sherd::campaign {
 namespace {
 
-CutOptions cut_options(const GrowthOptions& growth) {
+// The test of a rung: the sheet must become a slab, and the slab must cut the body. Keeps both.
+std::string slab_and_cut(const Specimen& s, const GrowthOptions& options, Real min_fragment_volume,
+                         const CrackSheet& sheet, Crack& crack) {
+  const Stopwatch watch(crack.report.cut_s);
+  std::string reason;
+  auto slab = thicken(sheet, {.thickness = options.thickness, .field = options.thickness_field}, reason);
+  if (!slab) return reason;
   CutOptions o;
-  o.edge_length = growth.edge_length;
-  o.slab_checked = true;
-  return o;
+  o.edge_length = options.edge_length, o.min_fragment_volume = min_fragment_volume, o.slab_checked = true;
+  crack.slab = std::move(*slab);
+  crack.cut = cut(s.body, crack.slab, o);
+  return crack.cut.ok ? "" : "the cut is refused: " + crack.cut.reason;
 }
 
-// Fills in all but the outcome's meaning; false when a stage refused.
+// False when the seed opens no crack or all rungs failed.
 bool grow_and_cut(const Specimen& s, const FunctionField& field, const CrackSeed& seed, const GrowthOptions& options,
                   Crack& crack) {
   CrackReport& r = crack.report;
@@ -24,33 +31,28 @@ bool grow_and_cut(const Specimen& s, const FunctionField& field, const CrackSeed
     const Stopwatch watch(r.grow_s);
     crack.growth = grow_crack(s.body.bvh(), field, seed, options);
   }
+  r.grow_s -= r.cut_s;  // the cuts happen within the growth
   const GrowthResult& g = crack.growth;
-  r.level = g.ladder_level, r.reason = g.reason, r.steps = static_cast<std::size_t>(g.steps), r.area = g.area;
-  r.sheet_triangles = g.sheet.triangles.size();
+  r.level = g.ladder_level, r.reason = g.reason, r.rungs = g.rungs, r.area = g.area;
+  r.steps = static_cast<std::size_t>(g.steps), r.sheet_triangles = g.sheet.triangles.size();
   if (g.outcome == GrowthOutcome::kRejectedSeed) r.outcome = CrackOutcome::kRejected;
-  if (g.outcome != GrowthOutcome::kComplete && g.outcome != GrowthOutcome::kArrested) return false;
-  const Stopwatch watch(r.cut_s);
-  std::string reason;
-  auto slab = thicken(g.sheet, options.thickness, 0, reason);
-  if (!slab) {
-    r.reason = "slab refused: " + reason;
+  if (g.outcome != GrowthOutcome::kComplete && g.outcome != GrowthOutcome::kArrested) {
+    crack.cut = {};
     return false;
   }
-  crack.slab = std::move(*slab);
-  crack.cut = cut(s.body, crack.slab, cut_options(options));
   r.fragments = crack.cut.fragments.size(), r.jitters = crack.cut.jitters, r.touched = crack.cut.touched;
   r.removed_volume = crack.cut.removed_volume;
-  if (!crack.cut.ok) r.reason = "cut refused: " + crack.cut.reason;
-  return crack.cut.ok;
+  return true;
 }
 
-void judge(const Specimen& s, const GrowthOptions& options, Crack& crack) {
+void judge(const Specimen& s, Crack& crack) {
   CrackReport& r = crack.report;
   const bool through = crack.growth.outcome == GrowthOutcome::kComplete;
   r.outcome = !through              ? CrackOutcome::kArrested
               : crack.cut.separated ? CrackOutcome::kSeparated
                                     : CrackOutcome::kPierced;
-  r.invalid = check_sheet_laws(crack.growth, s.body.bvh(), options.thickness);
+  r.invalid = check_sheet_laws(crack.growth, s.body.bvh());
+  if (r.invalid.empty() && !(signed_volume(crack.slab) > 0)) r.invalid = "the slab's volume is not positive";
   if (r.invalid.empty()) r.invalid = check_cut_laws(s.body, crack.cut);
   // V2: in a body without handles whatever has its whole border outside separates.
   if (r.invalid.empty() && r.outcome == CrackOutcome::kPierced && s.simply_connected)
@@ -85,8 +87,10 @@ const char* to_string(CrackOutcome outcome) {
   return "";
 }
 
-Crack run_crack(const Specimen& s, const FunctionField& field, const CrackSeed& seed, const GrowthOptions& options) {
+Crack run_crack(const Specimen& s, const FunctionField& field, const CrackSeed& seed, GrowthOptions options,
+                Real min_fragment_volume) {
   Crack crack;
+  options.accept = [&](const CrackSheet& sheet) { return slab_and_cut(s, options, min_fragment_volume, sheet, crack); };
   CrackReport& r = crack.report;
   const std::uint64_t before = campaign::hash_of(s.mesh());
   const std::size_t asked = field.evaluations;
@@ -94,7 +98,7 @@ Crack run_crack(const Specimen& s, const FunctionField& field, const CrackSeed& 
     const bool accepted = grow_and_cut(s, field, seed, options, crack);
     const Stopwatch watch(r.check_s);
     if (accepted)
-      judge(s, options, crack);
+      judge(s, crack);
     else if (r.reason.empty())
       r.invalid = "refused without a reason";
   } catch (const std::exception& e) {

@@ -23,6 +23,7 @@ struct CrackReport {
   CrackOutcome outcome = CrackOutcome::kDropped;
   int level = 0;        // of the retry ladder
   std::string reason;   // of a rejection, a drop or a ladder level above 0
+  Rungs rungs;          // why each rung failed
   std::string invalid;  // a law that the accepted result breaks; empty: none
   bool body_changed = false;
   std::size_t sheet_triangles = 0, steps = 0, fragments = 0, touched = 0, stress_points = 0;
@@ -40,12 +41,13 @@ struct Crack {
   CutResult cut;  // of a crack that was not rejected or dropped
 };
 
-// Grows, thickens, cuts and checks. An exception is an invalid result, never thrown on.
-Crack run_crack(const Specimen& specimen, const FunctionField& field, const CrackSeed& seed,
-                const GrowthOptions& options);
+// Grows with slab and cut as the test of each rung, and checks. An exception is an invalid result, never thrown on.
+// `options.accept` is overwritten. min_fragment_volume: of the body's.
+Crack run_crack(const Specimen& specimen, const FunctionField& field, const CrackSeed& seed, GrowthOptions options,
+                Real min_fragment_volume = 1e-5);
 
-// The laws S1-S5 and L1 of a grown sheet and of its slab: the first that is broken, or an empty text.
-std::string check_sheet_laws(const GrowthResult& growth, const TriangleBvh& body, Real thickness);
+// The laws S1-S5 of a grown sheet: the first that is broken, or an empty text.
+std::string check_sheet_laws(const GrowthResult& growth, const TriangleBvh& body);
 // The laws B1-B4 and V1 of a cut.
 std::string check_cut_laws(const CutBody& body, const CutResult& cut);
 // |V(body) - V(fragments) - V(removed) - V(dust)| / V(body)

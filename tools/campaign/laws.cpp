@@ -1,7 +1,6 @@
 #include <cmath>
 
-#include "engine/fracture/thicken.h"
-#include "engine/mesh/validate.h"
+#include "engine/mesh/certificate.h"
 #include "tools/campaign/crack.h"
 
 namespace sherd::campaign {
@@ -34,15 +33,11 @@ Real sheet_area(const CrackSheet& s) {
   return sum;
 }
 
-std::string check_sheet_laws(const GrowthResult& r, const TriangleBvh& body, Real thickness) {
+std::string check_sheet_laws(const GrowthResult& r, const TriangleBvh& body) {
   if (r.outcome != GrowthOutcome::kComplete && r.outcome != GrowthOutcome::kArrested)
     return r.reason.empty() ? "failed without a reason" : "";
   if (std::string bad = check_sheet(r.sheet); !bad.empty()) return bad;
-  if (std::string bad = check_border(r.sheet, body, r.outcome); !bad.empty()) return bad;
-  std::string reason;
-  const auto slab = thicken(r.sheet, thickness, 0, reason);
-  if (!slab) return reason;
-  return signed_volume(*slab) > 0 ? "" : "the slab's volume is not positive";
+  return check_border(r.sheet, body, r.outcome);
 }
 
 Real balance_of(const CutBody& body, const CutResult& c) {
@@ -55,9 +50,8 @@ std::string check_cut_laws(const CutBody& body, const CutResult& c) {
   constexpr Real kBalance = 1e-9;  // V1
   if (c.fragments.empty()) return "no fragment is left";
   for (const SurfaceMesh& f : c.fragments) {
-    const MeshReport report = report_mesh(f, {true, 10});
-    if (!is_valid(report)) return "a fragment is not valid: " + to_text(report);
-    if (f.faces.kind.size() != f.triangle_count()) return "a fragment lacks attributes";
+    const MeshCertificate certificate = certify(f);
+    if (!certificate.ok()) return "a fragment has no certificate: " + certificate.first_defect;
   }
   return balance_of(body, c) < kBalance ? "" : "volumes do not balance";
 }

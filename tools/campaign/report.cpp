@@ -57,6 +57,8 @@ nlohmann::json to_json(const JobResult& j) {
                      {"grow_s", r.grow_s},
                      {"cut_s", r.cut_s},
                      {"hash", hex(r.hash)}};
+  for (const std::string& text : r.rungs.reason)
+    if (!text.empty()) out["rungs"].push_back(text);
   if (!r.reason.empty()) out["reason"] = r.reason;
   if (!r.invalid.empty()) out["invalid"] = r.invalid;
   if (r.body_changed) out["body_changed"] = true;
