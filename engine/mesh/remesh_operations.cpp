@@ -37,10 +37,14 @@ Real Remesher::arc_on(std::uint32_t line, std::uint32_t v) const {
   return features_.lines[line].nearest(mesh_.position[v]);
 }
 
-Vec3 Remesher::vertex_normal(std::uint32_t v) const {
+Vec3 Remesher::area_around(std::uint32_t v) const {
   Vec3 n;
   mesh_.for_out(v, [&](std::uint32_t h) { n += area_normal(mesh_.corners(h / 3)); });
-  return normalized(n);
+  return 0.5 * n;
+}
+
+Vec3 Remesher::vertex_normal(std::uint32_t v) const {
+  return normalized(area_around(v));
 }
 
 void Remesher::ring(std::uint32_t v, Patch& patch) const {
@@ -225,7 +229,7 @@ bool Remesher::try_flip(std::uint32_t h) {
   return true;
 }
 
-bool Remesher::try_move(std::uint32_t v, const Vec3& p) {
+bool Remesher::try_move(std::uint32_t v, const Vec3& p, Real keep) {
   before_.clear();
   ring(v, before_);
   after_ = before_;
@@ -237,7 +241,7 @@ bool Remesher::try_move(std::uint32_t v, const Vec3& p) {
     old_angle = std::min(old_angle, smallest_angle(before_[i].corner));
     new_angle = std::min(new_angle, smallest_angle(after_[i].corner));
   }
-  if (new_angle < 3 * kPoorAngle && new_angle < old_angle) return false;
+  if (new_angle < 3 * kPoorAngle && new_angle < keep * old_angle) return false;
   if (!turns_little(before_, after_, false) || !clear(after_, replaced_)) return false;
   mesh_.position[v] = p;
   for (const NewFace& f : after_) tree_.update(mesh_, f.face);

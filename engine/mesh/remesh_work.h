@@ -43,11 +43,23 @@ class Remesher {
   bool smooth_line_vertex(std::uint32_t v);
   bool smooth_free_vertex(std::uint32_t v);
 
+  // remesh_fit.cpp
+  void fit_heights();
+  void fit_volume();
+  Real volume() const;
+  bool may_give(std::uint32_t v) const;
+  Vec3 area_around(std::uint32_t v) const;  // sum of the area vectors, m^2
+  Real height_over_input(std::uint32_t t) const;
+  bool may_fit(std::uint32_t v) const {
+    return mesh_.out[v] != kNone && features_.role[v] == VertexRole::kFree && !locked(v);
+  }
+
   // Guarded operations (remesh_operations.cpp).
   bool try_collapse(std::uint32_t h, bool repairing);
   bool try_split(std::uint32_t h, const Vec3& p, Real arc);
   bool try_flip(std::uint32_t h);
-  bool try_move(std::uint32_t v, const Vec3& p);
+  // `keep`: the least part of the smallest angle around that must remain where it is poor.
+  bool try_move(std::uint32_t v, const Vec3& p, Real keep = 1);
 
   bool may_collapse(std::uint32_t h, bool repairing) const;
   bool pinches_a_sheet(std::uint32_t h) const;

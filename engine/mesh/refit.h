@@ -1,0 +1,35 @@
+// A freshly cut piece made fit for the next solve: no slivers, the volume kept, features kept, or left as it is.
+#pragma once
+#include <string>
+
+#include "engine/mesh/remesh.h"
+
+namespace sherd {
+
+struct RefitOptions {
+  Real edge_length = 0;         // target h, metres
+  Real edge_per_thickness = 0;  // of SizingOptions; 0: h everywhere
+  Real least_angle = 1;         // degrees that every triangle must have
+  // Of the piece's volume. A piece too small to keep that gets the attempt that comes closest, as long as it keeps this
+  // part of 10 h^3.
+  Real max_volume_change = 2e-4;
+};
+
+struct RefitReport {
+  bool ok = false;
+  std::string strategy;  // which attempt succeeded
+  std::string reason;    // of a refusal: what the attempts ended with
+  int attempts = 0;
+  Real min_angle = 0;                     // of the result, degrees
+  Real volume_change = 0;                 // (result - piece) / piece
+  std::size_t below_1 = 0, below_15 = 0;  // triangles of the result with a smaller angle, degrees
+};
+
+// Attempts from the least change to the greatest, until one keeps every promise of the options and is a valid mesh:
+// near poor triangles only; with close features merged; in a wider zone; with finer edges; slivers alone. Otherwise
+// `out` is the piece. `piece` is closed, 2-manifold and without self-intersections; its lines between faces of
+// different kind or crack id and its creases stay, as remesh() says. Deterministic. Throws InputError for options out
+// of range.
+RefitReport refit(const SurfaceMesh& piece, const RefitOptions& options, SurfaceMesh& out);
+
+}  // namespace sherd
