@@ -75,7 +75,7 @@ class Refit {
   RemeshOptions options_of(const Attempt& attempt) const {
     RemeshOptions o;
     o.edge_length = attempt.finer * options_.edge_length;
-    o.merge = attempt.merge;
+    o.merge = attempt.merge, o.keep_volume = true;
     if (attempt.slivers) o.iterations = 0;
     if (options_.edge_per_thickness > 0 || attempt.finer < 1) {
       o.size = size_;

@@ -17,6 +17,9 @@ struct RemeshOptions {
   // Of the target length: where features (fixed vertices, different lines) closer than this force faces below 20
   // degrees, they are merged, as long as no thin sheet is pinched and faces stay within it of the input. At most 0.5.
   Real merge = 0.02;
+  // Vertices leave the input surface by a part of the facets' own error, so that new facets cut no volume off curved
+  // places, and walls and curved places give what features have cost. Without, vertices lie on the input surface.
+  bool keep_volume = false;
   // Empty, or the target at each vertex of the input, metres, positive (linear in between; engine/mesh/sizing.h makes
   // it). `edge_length` is then what features are judged by, and the unit of the report's deviations.
   std::vector<Real> size = {};
