@@ -2,81 +2,92 @@
 
 #include <fmt/format.h>
 
+#include "engine/fragment/cleanup.h"
+#include "engine/fragment/components.h"
 #include "engine/fragment/cut_checks.h"
-#include "engine/fragment/pieces.h"
+#include "engine/fragment/difference.h"
 #include "engine/mesh/intersections.h"
+#include "kernels/core/fault.h"
 #include "kernels/core/random.h"
 
 namespace sherd {
 namespace {
 
 constexpr int kMaxJitters = 8;
-constexpr Real kJitter = 1e-7;  // of h
+constexpr Real kJitter = 1e-7;      // of h
+constexpr Real kLeastArea = 1e-12;  // of h^2, the design's B4
 
-// A copy, so that the columns of attributes are complete whatever the caller left out.
-SurfaceMesh with_attributes(const SurfaceMesh& mesh) {
-  SurfaceMesh copy = mesh;
-  copy.faces.resize(mesh.triangle_count());
-  return copy;
-}
-
-SurfaceMesh jittered(const SurfaceMesh& slab, Real amplitude, std::uint64_t seed) {
-  SurfaceMesh moved = slab;
+// Moves the slab's vertices to random places around their own.
+void jitter(const SurfaceMesh& slab, Real amplitude, std::uint64_t seed, SurfaceMesh& moved) {
   Random random(seed);
   for (std::size_t i = 0; i < moved.vertex_count(); ++i) {
     const Real x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
-    moved.vertices.add(i, amplitude * Vec3{x, y, z});
+    moved.vertices.set(i, slab.vertices[i] + amplitude * Vec3{x, y, z});
   }
-  return moved;
 }
 
-// One try with the slab as it is. `again`: another jitter may help.
-Difference attempt(const CutOperand& body, const SurfaceMesh& slab_mesh, bool first, bool checked, bool& again) {
-  Difference result;
-  again = false;
-  const CutOperand slab(slab_mesh);
-  if (first && !checked)
-    if (const std::string text = check_manifold(slab_mesh, slab.twin); !text.empty()) {
-      result.reason = "the slab is not a closed manifold: " + text;
-      return result;
-    }
-  // The caller's slab has to be embedded; one that a jitter has folded over is only an unlucky draw.
-  again = !first;
-  if (!(first && checked) && count_self_intersections(slab_mesh, 1) > 0) {
-    result.reason = "the slab intersects itself";
-    return result;
-  }
-  again = true;
-  const Piercing piercing = pierce(body, slab);
-  if (piercing.status != PierceStatus::kOk) {
-    result.reason = piercing.reason;
-    return result;
-  }
-  result = subtract(body, slab, piercing);
-  if (!result.ok) return result;
-  std::string text = check_balance(result);
-  if (text.empty()) text = check_touched(result);
-  if (text.empty() && !result.mesh.triangles.empty()) text = check_manifold(result.mesh, build_twins(result.mesh));
-  result.ok = text.empty(), result.reason = text;
-  return result;
-}
+// One try with the slab as it is.
+class Attempt {
+ public:
+  Attempt(const CutBody& body, const CutOperand& slab, Real edge_length)
+      : piercing_(pierce(body.operand(), slab)), carving_(body, slab, piercing_), edge_length_(edge_length) {}
 
-void collect(const Difference& difference, const CutOptions& options, CutResult& result) {
-  result.reason.clear();
-  result.removed_volume = difference.removed_volume;
-  result.touched = difference.touched.size();
-  std::vector<Piece> pieces = split_pieces(difference.mesh);
-  result.separated = pieces.size() > 1;
-  for (Piece& piece : pieces) {
-    const bool dust = piece.volume < options.min_fragment_volume * difference.body_volume;
-    if (dust && options.dust == DustRule::kDrop) {
-      result.dust_volume += piece.volume;
-    } else {
-      result.fragments.push_back(std::move(piece.mesh));
+  // Empty, or why another jitter has to be tried.
+  std::string run() {
+    if (piercing_.status != PierceStatus::kOk) return piercing_.reason;
+    if (std::string text = subtract(piercing_, carving_); !text.empty()) return text;
+    fault_point("cut.check");
+    if (std::string text = check_balance(carving_); !text.empty()) return text;
+    if (std::string text = check_links(carving_); !text.empty()) return text;
+    std::vector<std::uint32_t> parts;
+    for (std::uint32_t i = 0; i < carving_.faces.size(); ++i)
+      if (!carving_.faces[i].whole) parts.push_back(i);
+    const Real least_area = kLeastArea * edge_length_ * edge_length_;
+    if (BadFaces bad = find_bad_faces(carving_, parts, least_area); !bad.faces.empty()) {
+      fault_point("cut.clean");
+      std::string reason = bad.reason;
+      if (!clean_up(carving_, std::move(bad), edge_length_, least_area, cleanups_)) return reason;
+      if (reason = check_balance(carving_); !reason.empty()) return reason;
+      if (reason = check_links(carving_); !reason.empty()) return reason;
     }
+    fault_point("cut.components");
+    components_ = find_components(carving_);
+    return components_.reason;
   }
-  result.ok = !result.fragments.empty();
-  if (!result.ok) result.reason = "nothing of the body is left";
+
+  void collect(const CutOptions& options, CutResult& result) const {
+    result.removed_volume = carving_.removed_volume;
+    result.separated = components_.solids.size() > 1;
+    result.euler = components_.euler, result.cleanups = cleanups_;
+    for (const NewFace& f : carving_.faces) result.touched += f.alive && !f.whole;
+    for (const CutSolid& solid : components_.solids) {
+      if (options.dust == DustRule::kDrop && solid.volume < options.min_fragment_volume * carving_.body().volume()) {
+        result.dust_volume += solid.volume;
+        continue;
+      }
+      fault_point("cut.extract");
+      result.fragments.push_back(extract_solid(carving_, components_, solid));
+    }
+    result.ok = !result.fragments.empty();
+    if (!result.ok) result.reason = "nothing of the body is left";
+  }
+
+ private:
+  Piercing piercing_;
+  Carving carving_;
+  Real edge_length_;
+  Components components_;
+  int cleanups_ = 0;
+};
+
+// Empty, or why the slab cannot be cut out of anything.
+std::string refuse_slab(const SurfaceMesh& slab, const std::vector<std::uint32_t>& twin, const CutOptions& options) {
+  if (!(signed_volume(slab) > 0)) return "the slab has no positive volume";
+  if (options.slab_checked) return {};
+  if (const std::string text = check_manifold(slab, twin); !text.empty())
+    return "the slab is not a closed manifold: " + text;
+  if (count_self_intersections(slab, 1) > 0) return "the slab intersects itself";
+  return {};
 }
 
 }  // namespace
@@ -85,25 +96,31 @@ CutResult cut(const CutBody& body, const SurfaceMesh& slab, const CutOptions& op
   CutResult result;
   if (result.reason = body.defect(); !result.reason.empty()) return result;
   if (result.reason = check_numbers(slab, "the slab"); !result.reason.empty()) return result;
-  const SurfaceMesh full_slab = with_attributes(slab);
-  if (!(signed_volume(slab) > 0)) {
-    result.reason = "the slab has no positive volume";
-    return result;
-  }
-  const Real amplitude = kJitter * (options.edge_length > 0 ? options.edge_length : mean_edge_length(body.mesh()));
+  fault_point("cut.begin");
+  SurfaceMesh moved = slab;
+  moved.faces.resize(slab.triangle_count());
+  const std::vector<std::uint32_t> twin = build_twins(slab);
+  if (result.reason = refuse_slab(slab, twin, options); !result.reason.empty()) return result;
+  const Real edge_length = options.edge_length > 0 ? options.edge_length : mean_edge_length(body.mesh());
   Random seeds(options.seed);
-  for (int jitters = 0;; ++jitters) {
-    bool again = false;
-    const SurfaceMesh moved = jitters == 0 ? full_slab : jittered(full_slab, amplitude, seeds.next());
-    const Difference difference = attempt(body.operand(), moved, jitters == 0, options.slab_checked, again);
-    result.jitters = jitters;
-    if (difference.ok) {
-      collect(difference, options, result);
+  for (;; ++result.jitters) {
+    const CutOperand operand(moved, twin);
+    // A jitter that folds the slab over is only an unlucky draw.
+    if (result.jitters > 0 && count_self_intersections(moved, 1) > 0) {
+      result.reason = "the slab intersects itself";
+    } else {
+      Attempt attempt(body, operand, edge_length);
+      result.reason = attempt.run();
+      if (result.reason.empty()) {
+        attempt.collect(options, result);
+        return result;
+      }
+    }
+    if (result.jitters == kMaxJitters) {
+      result.reason += fmt::format(" (after {} jitters of the slab)", kMaxJitters);
       return result;
     }
-    result.reason = difference.reason;
-    if (again && jitters == kMaxJitters) result.reason += fmt::format(" (after {} jitters of the slab)", jitters);
-    if (!again || jitters == kMaxJitters) return result;
+    jitter(slab, kJitter * edge_length, seeds.next(), moved);
   }
 }
 

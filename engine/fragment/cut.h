@@ -24,8 +24,10 @@ struct CutResult {
   Real removed_volume = 0;             // of body intersected with slab, m^3
   Real dust_volume = 0;                // of pieces dropped, m^3
   bool separated = false;              // into two solids or more, dust counted
+  std::int64_t euler = 0;              // of the surface after the cut, dust included: as CutBody::euler()
   std::size_t touched = 0;             // faces of the result that are parts of a cut face
   int jitters = 0;                     // restarts because of an exact coincidence
+  int cleanups = 0;                    // tiny edges collapsed at the cut
 };
 
 // Faces away from the slab are bit-identical to the input and keep their attributes; sub-faces inherit their parent's;

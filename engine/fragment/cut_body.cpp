@@ -32,9 +32,34 @@ CutBody::CutBody(SurfaceMesh&& mesh, std::string defect)
     defect_ = "the body is not a closed manifold: " + text;
     return;
   }
-  volume_ = signed_volume(operand_.mesh);
+  label_shells();
+  for (const BodyShell& s : shells_) volume_ += s.volume;
   if (!(volume_ > 0)) defect_ = "the body has no positive volume";
   euler_ = euler_of(operand_.mesh);
+}
+
+void CutBody::label_shells() {
+  const auto n = static_cast<std::uint32_t>(operand_.mesh.triangle_count());
+  const Vec3 origin = operand_.bvh.box().centre();
+  shell_.assign(n, kNone);
+  std::vector<std::uint32_t> stack;
+  for (std::uint32_t first = 0; first < n; ++first) {
+    if (shell_[first] != kNone) continue;
+    const auto label = static_cast<std::uint32_t>(shells_.size());
+    BodyShell shell;
+    shell.face = first;
+    shell_[first] = label, stack.assign(1, first);
+    while (!stack.empty()) {
+      const std::uint32_t f = stack.back();
+      stack.pop_back();
+      ++shell.faces, shell.volume += corner_volume6(operand_.corners(f), origin) / 6;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t g = operand_.twin[3 * f + k] / 3;
+        if (shell_[g] == kNone) shell_[g] = label, stack.push_back(g);
+      }
+    }
+    shells_.push_back(shell);
+  }
 }
 
 }  // namespace sherd

@@ -9,12 +9,17 @@
 namespace sherd {
 namespace {
 
-SurfaceMesh part_of(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& faces) {
-  SurfaceMesh part;
-  part.vertices = mesh.vertices;
-  part.triangles.reserve(faces.size());
-  for (std::uint32_t f : faces) part.triangles.push_back(mesh.triangles[f]);
-  return part;
+constexpr std::size_t kFew = 64;  // faces for which a tree over all others does not pay
+
+// A tree over some of the new faces.
+TriangleBvh tree_of(const Carving& carving, const std::vector<std::uint32_t>& faces) {
+  SurfaceMesh soup;
+  for (const std::uint32_t i : faces) {
+    const auto n = static_cast<std::uint32_t>(soup.vertex_count());
+    for (const Vec3& p : carving.corners(carving.body_faces() + i)) soup.vertices.push_back(p);
+    soup.triangles.push_back({n, n + 1, n + 2});
+  }
+  return TriangleBvh(soup);
 }
 
 }  // namespace
@@ -49,36 +54,98 @@ std::string check_manifold(const SurfaceMesh& mesh, const std::vector<std::uint3
   return {};
 }
 
-std::string check_touched(const Difference& difference) {
-  const SurfaceMesh& mesh = difference.mesh;
-  for (std::uint32_t t : difference.touched)
-    if (!(norm2(mesh.area_normal2(t)) > 0)) return "a part of a cut face has no area after rounding";
-  std::vector<std::uint32_t> rest;
-  std::size_t next = 0;
-  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
-    if (next < difference.touched.size() && difference.touched[next] == t) {
-      ++next;
-      continue;
+std::string check_links(const Carving& carving) {
+  const std::uint32_t shift = carving.body_faces();
+  // New faces around each of their vertices, and an edge that leaves it.
+  SparseMap number, start;
+  std::vector<std::uint32_t> vertices;
+  for (std::uint32_t i = 0; i < carving.faces.size(); ++i) {
+    if (!carving.faces[i].alive) continue;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = carving.faces[i].vertices[k];
+      if (number.insert(v, 0)) start.set(v, 3 * (shift + i) + k), vertices.push_back(v);
+      number.set(v, number[v] + 1);
     }
-    rest.push_back(t);
   }
-  const TriangleBvh parts(part_of(mesh, difference.touched));
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  parts.overlapping_pairs(parts, pairs);
-  for (const auto& [i, j] : pairs)
-    if (i < j && faces_intersect(mesh, difference.touched[i], difference.touched[j]))
-      return "two parts of cut faces intersect after rounding";
-  parts.overlapping_pairs(TriangleBvh(part_of(mesh, rest)), pairs);
-  for (const auto& [i, j] : pairs)
-    if (faces_intersect(mesh, difference.touched[i], rest[j]))
-      return "a part of a cut face intersects a whole face after rounding";
+  // Whole body faces around the corners of cut faces.
+  SparseMap seen;
+  for (const std::uint32_t f : carving.cut)
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = carving.triangle(f)[k];
+      if (!number.contains(v) || !seen.insert(v, 1)) continue;
+      const auto& twin = carving.body().twins();
+      std::uint32_t e = 3 * f + k, whole = 0;
+      do {
+        whole += carving.alive(e / 3);
+        e = twin[e % 3 == 0 ? e + 2 : e - 1];
+      } while (e != 3 * f + k);
+      number.set(v, number[v] + whole);
+    }
+  for (const std::uint32_t v : vertices) {
+    std::uint32_t fan = 0;
+    carving.around(start[v], [&](std::uint32_t) { ++fan; });
+    if (fan != number[v]) return fmt::format("the triangles around vertex {} are not one fan", v);
+  }
   return {};
 }
 
-std::string check_balance(const Difference& d) {
-  const Real error = std::abs(d.body_volume - d.kept_volume - d.removed_volume);
-  if (error < 1e-9 * d.body_volume) return {};
-  return fmt::format("volumes do not balance: {:.3g} of the body's volume is unaccounted for", error / d.body_volume);
+BadFaces find_bad_faces(const Carving& carving, const std::vector<std::uint32_t>& tested, Real least_area) {
+  BadFaces bad;
+  const std::uint32_t shift = carving.body_faces();
+  const auto report = [&](std::uint32_t i, const char* reason) {
+    if (bad.faces.empty()) bad.reason = reason;
+    bad.faces.push_back(i);
+  };
+  const auto meet = [&](std::uint32_t f, std::uint32_t g) {
+    return triangles_intersect(carving.triangle(f), carving.corners(f), carving.triangle(g), carving.corners(g));
+  };
+  std::vector<std::uint32_t> others;
+  for (std::uint32_t i = 0, next = 0; i < carving.faces.size(); ++i) {
+    if (next < tested.size() && tested[next] == i) {
+      ++next;
+      const auto c = carving.corners(shift + i);
+      if (!(0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) > least_area)) report(i, "a part of a cut face has no area");
+    } else if (carving.faces[i].alive) {
+      others.push_back(i);
+    }
+  }
+  const TriangleBvh tree = tree_of(carving, tested);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  tree.overlapping_pairs(tree, pairs);
+  for (const auto& [i, j] : pairs)
+    if (i < j && meet(shift + tested[i], shift + tested[j])) {
+      report(tested[i], "two parts of cut faces intersect after rounding");
+      bad.faces.push_back(tested[j]);
+    }
+  tree.overlapping_pairs(carving.body().bvh(), pairs);
+  for (const auto& [i, f] : pairs)
+    if (carving.alive(f) && meet(shift + tested[i], f))
+      report(tested[i], "a part of a cut face intersects a whole face");
+  const auto against_other = [&](std::uint32_t i, std::uint32_t j) {
+    if (meet(shift + tested[i], shift + others[j])) report(tested[i], "a part of a cut face intersects a wall");
+  };
+  if (tested.size() < kFew) {
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t j = 0; j < others.size(); ++j) {
+      Box box;
+      for (const Vec3& p : carving.corners(shift + others[j])) box.grow(p);
+      if (!tree.box().overlaps(box)) continue;
+      tree.overlapping(box, near);
+      for (const std::uint32_t i : near) against_other(i, j);
+    }
+  } else {
+    tree.overlapping_pairs(tree_of(carving, others), pairs);
+    for (const auto& [i, j] : pairs) against_other(i, j);
+  }
+  std::sort(bad.faces.begin(), bad.faces.end());
+  bad.faces.erase(std::unique(bad.faces.begin(), bad.faces.end()), bad.faces.end());
+  return bad;
+}
+
+std::string check_balance(const Carving& c) {
+  const Real volume = c.body().volume(), error = std::abs(volume - c.kept_volume - c.removed_volume);
+  if (error < 1e-9 * volume) return {};
+  return fmt::format("volumes do not balance: {:.3g} of the body's volume is unaccounted for", error / volume);
 }
 
 }  // namespace sherd

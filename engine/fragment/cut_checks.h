@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "engine/fragment/difference.h"
+#include "engine/fragment/carving.h"
 
 namespace sherd {
 
@@ -10,10 +10,18 @@ namespace sherd {
 std::string check_numbers(const SurfaceMesh& mesh, const char* name);
 // Closed with one fan of faces around each vertex.
 std::string check_manifold(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twin);
-// Parts of cut faces have area and meet no other face but at shared vertices and edges: exact on the rounded
-// coordinates.
-std::string check_touched(const Difference& difference);
+// The same for the new faces and around their vertices.
+std::string check_links(const Carving& carving);
 // |V(body) - V(kept) - V(body in slab)| < 1e-9 V(body)
-std::string check_balance(const Difference& difference);
+std::string check_balance(const Carving& carving);
+
+// New faces that a valid mesh cannot have: smaller than least_area (m^2), or meeting another face beyond shared
+// vertices and edges; exact on the rounded coordinates.
+struct BadFaces {
+  std::vector<std::uint32_t> faces;  // ascending
+  std::string reason;                // of the first; empty when there are none
+};
+// Among `tested`, ascending indices into the carving's new faces. All others are taken to fit together.
+BadFaces find_bad_faces(const Carving& carving, const std::vector<std::uint32_t>& tested, Real least_area);
 
 }  // namespace sherd

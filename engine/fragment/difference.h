@@ -1,24 +1,11 @@
-// Body minus slab as one welded triangle set, before it is taken apart into fragments.
+// Body minus slab: triangulates the cut faces and decides which faces stay (the design's O10, steps 4 to 6).
 #pragma once
-#include <string>
-#include <vector>
-
-#include "engine/fragment/piercing.h"
+#include "engine/fragment/carving.h"
 
 namespace sherd {
 
-struct Difference {
-  bool ok = false;
-  std::string reason;
-  SurfaceMesh mesh;                    // kept faces of the body in order, then kept faces of the slab, reversed
-  std::vector<std::uint32_t> touched;  // faces of `mesh` that are parts of a cut face, ascending
-  std::vector<char> intact;  // per face of `mesh`: a whole, unmoved face of body (1) or slab (2), or a part (0)
-  Real body_volume = 0;      // m^3
-  Real kept_volume = 0;      // of `mesh`
-  Real removed_volume = 0;   // slab minus (slab minus body): uses the faces that `mesh` does not
-};
-
-// `piercing` must be in state kOk. Not ok when a face cannot be triangulated or sides contradict each other.
-Difference subtract(const CutOperand& body, const CutOperand& slab, const Piercing& piercing);
+// `piercing`, between the carving's own operands, must be in state kOk. Empty, or why not: a face cannot be
+// triangulated, or sides contradict each other. Costs what the slab touches.
+std::string subtract(const Piercing& piercing, Carving& carving);
 
 }  // namespace sherd

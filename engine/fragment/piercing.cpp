@@ -141,7 +141,7 @@ Piercing pierce(const CutOperand& body, const CutOperand& slab) {
 }
 
 bool inside_exact(const CutOperand& operand, const Vec3& p, bool& decided) {
-  const Box box = bounding_box(operand.mesh);
+  const Box box = operand.bvh.box();
   const Real size = box.diagonal() + distance(p, box.centre());
   decided = true;
   if (!box.overlaps({p, p})) return false;

@@ -12,14 +12,22 @@ namespace sherd {
 // A mesh with what the cut asks of it.
 struct CutOperand {
   explicit CutOperand(SurfaceMesh surface) : mesh(std::move(surface)), twin(build_twins(mesh)), bvh(mesh) {}
+  // The same triangles with other vertices.
+  CutOperand(SurfaceMesh surface, std::vector<std::uint32_t> twins)
+      : mesh(std::move(surface)), twin(std::move(twins)), bvh(mesh) {}
   SurfaceMesh mesh;
   std::vector<std::uint32_t> twin;  // directed edge 3 t + k -> opposite
   TriangleBvh bvh;
 
-  std::array<Vec3, 3> corners(std::uint32_t t) const { return bvh.corners(t); }
+  const std::array<Vec3, 3>& corners(std::uint32_t t) const { return bvh.corners(t); }
   // Both directions of an edge have this id.
   std::uint32_t edge_id(std::uint32_t directed) const { return std::min(directed, twin[directed]); }
 };
+
+// Six times the volume of the tetrahedron of a triangle and an origin; summed over a closed surface the origin is free.
+inline Real corner_volume6(const std::array<Vec3, 3>& t, const Vec3& origin) {
+  return dot(t[0] - origin, cross(t[1] - origin, t[2] - origin));
+}
 
 // Edge `edge` of operand `edge_operand` (0 body, 1 slab) through face `face` of the other.
 struct Crossing {

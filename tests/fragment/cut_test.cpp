@@ -189,7 +189,11 @@ TEST(Cut, SmallPiecesAreDustAndTheirVolumeIsReported) {
   const CutResult one = cut(body, slab, options);
   expect_good(body, one);
   ASSERT_EQ(one.fragments.size(), 1u);
-  EXPECT_EQ(one.dust_volume, signed_volume(both.fragments[1]));
+  EXPECT_NEAR(one.dust_volume, signed_volume(both.fragments[1]), 1e-15);
+  options.dust = DustRule::kKeep;
+  const CutResult kept = cut(body, slab, options);
+  EXPECT_EQ(kept.fragments, both.fragments);
+  EXPECT_EQ(kept.dust_volume, 0);
 }
 
 TEST(Cut, ABodyWithinTheSlabIsRefused) {
