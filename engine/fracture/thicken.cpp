@@ -107,8 +107,8 @@ SurfaceMesh offset(const Refined& r, const std::vector<Real>& thickness) {
     slab.vertices.push_back(r.position[v] - half);
   }
   for (const Triangle& t : r.triangles) {
-    slab.triangles.push_back({up[t[0]], up[t[1]], up[t[2]]});
-    slab.triangles.push_back({down[t[0]], down[t[2]], down[t[1]]});
+    slab.triangles.push_back({up[t[0]], up[t[1]], up[t[2]]}), slab.faces.side.push_back(1);
+    slab.triangles.push_back({down[t[0]], down[t[2]], down[t[1]]}), slab.faces.side.push_back(-1);
   }
   for (const Triangle& t : r.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -130,6 +130,20 @@ std::vector<Real> thicknesses(const Refined& r, const SlabOptions& options, std:
     return {};
   }
   return t;
+}
+
+// Texture coordinates in a plane across the mean normal.
+void add_uv(const Refined& r, Real scale, SurfaceMesh& slab) {
+  Vec3 sum;
+  for (const Triangle& t : r.triangles)
+    sum += cross(r.position[t[1]] - r.position[t[0]], r.position[t[2]] - r.position[t[0]]);
+  const Vec3 n = norm(sum) > 0 ? normalized(sum) : Vec3{0, 0, 1}, u = scale * any_perpendicular(n), v = cross(n, u);
+  CornerChannel uv{"uv", 2, {}};
+  uv.value.reserve(uv.width() * slab.triangle_count());
+  for (std::size_t t = 0; t < slab.triangle_count(); ++t)
+    for (int k = 0; k < 3; ++k)
+      for (const Vec3& axis : {u, v}) uv.value.push_back(static_cast<float>(dot(slab.corner(t, k), axis)));
+  slab.channels.push_back(std::move(uv));
 }
 
 // Empty when the slab may be cut out of a body (the design's L1).
@@ -158,6 +172,8 @@ std::optional<SurfaceMesh> thicken(const CrackSheet& sheet, const SlabOptions& o
   slab.faces.resize(slab.triangle_count());
   slab.faces.kind.assign(slab.triangles.size(), FaceKind::kCrack);
   slab.faces.crack.assign(slab.triangles.size(), options.crack);
+  slab.faces.material.assign(slab.triangles.size(), options.material);
+  add_uv(refined, options.uv_scale, slab);
   reason = check_slab(slab);
   if (!reason.empty()) return std::nullopt;
   return slab;

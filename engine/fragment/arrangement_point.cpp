@@ -42,8 +42,9 @@ ArrangementPoint make_crossing(const Vec3& u, const Vec3& v, const std::array<Ve
   return p;
 }
 
-PlanarOrientation::PlanarOrientation(const std::array<Vec3, 3>& corners, const std::vector<ArrangementPoint>& points)
-    : points_(points), exact_(points.size()) {
+PlanarOrientation::PlanarOrientation(const std::array<Vec3, 3>& corners, const std::vector<ArrangementPoint>& points,
+                                     const std::vector<std::uint8_t>& edges)
+    : points_(points), edges_(edges), exact_(points.size()) {
   const Vec3 n = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const Vec3 size{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
@@ -70,6 +71,7 @@ const PlanarOrientation::Homogeneous& PlanarOrientation::exact(std::uint32_t i) 
 }
 
 int PlanarOrientation::operator()(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  if (!edges_.empty() && (edges_[a] & edges_[b] & edges_[c]) != 0) return 0;
   const ArrangementPoint &p = points_[a], &q = points_[b], &r = points_[c];
   const Real qx = q.position[first_] - p.position[first_], qy = q.position[second_] - p.position[second_];
   const Real rx = r.position[first_] - p.position[first_], ry = r.position[second_] - p.position[second_];

@@ -28,8 +28,10 @@ ArrangementPoint make_crossing(const Vec3& u, const Vec3& v, const std::array<Ve
 // the projection along the normal's largest component.
 class PlanarOrientation {
  public:
-  // corners: the face; points must outlive this object.
-  PlanarOrientation(const std::array<Vec3, 3>& corners, const std::vector<ArrangementPoint>& points);
+  // corners: the face; points and edges must outlive this object. edges, when not empty: per point a bit for each edge
+  // of the face that it is known to lie on exactly, which spares the exact arithmetic that would find that out.
+  PlanarOrientation(const std::array<Vec3, 3>& corners, const std::vector<ArrangementPoint>& points,
+                    const std::vector<std::uint8_t>& edges);
   bool degenerate() const { return sign_ == 0; }
   int operator()(std::uint32_t a, std::uint32_t b, std::uint32_t c);
 
@@ -40,6 +42,7 @@ class PlanarOrientation {
   const Homogeneous& exact(std::uint32_t i);
 
   const std::vector<ArrangementPoint>& points_;
+  const std::vector<std::uint8_t>& edges_;
   std::vector<std::optional<Homogeneous>> exact_;
   int first_ = 0, second_ = 1;  // the coordinates kept
   int sign_ = 0;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 
+#include "engine/mesh/attributes.h"
 #include "engine/mesh/validate_edges.h"
 
 namespace sherd {
@@ -346,19 +347,23 @@ SurfaceMesh extract_solid(const Carving& carving, const Components& components, 
   for (const std::uint32_t s : solid.shells)
     parts.insert(parts.end(), components.shells[s].parts.begin(), components.shells[s].parts.end());
   std::sort(parts.begin(), parts.end());
+  const SurfaceMesh &body = carving.body().mesh(), &slab = carving.slab().mesh;
   SurfaceMesh mesh;
+  match_channels(body, mesh);
   mesh.triangles.reserve(solid.faces);
   std::size_t next = 0;
   const auto add_part = [&] {
-    const NewFace& f = carving.faces[parts[next++]];
+    const std::uint32_t i = parts[next++];
+    const NewFace& f = carving.faces[i];
+    const SurfaceMesh& from = f.of_slab ? slab : body;
     mesh.triangles.push_back(f.vertices);
-    mesh.faces.push_back_from((f.of_slab ? carving.slab().mesh : carving.body().mesh()).faces, f.parent);
+    mesh.faces.push_back_from(from.faces, f.parent);
+    interpolate_corners(from, f.parent, carving.corners(carving.body_faces() + i), mesh);
   };
   for (const std::uint32_t f : whole_faces(carving, components, solid)) {
     while (next < parts.size() && !carving.faces[parts[next]].of_slab && carving.faces[parts[next]].parent < f)
       add_part();
-    mesh.triangles.push_back(carving.body().mesh().triangles[f]);
-    mesh.faces.push_back_from(carving.body().mesh().faces, f);
+    append_face(body, f, body.triangles[f], mesh);
   }
   while (next < parts.size()) add_part();
   take_vertices(carving, mesh);

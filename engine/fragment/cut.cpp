@@ -6,6 +6,7 @@
 #include "engine/fragment/components.h"
 #include "engine/fragment/cut_checks.h"
 #include "engine/fragment/difference.h"
+#include "engine/mesh/attributes.h"
 #include "engine/mesh/intersections.h"
 #include "kernels/core/fault.h"
 #include "kernels/core/random.h"
@@ -99,6 +100,7 @@ CutResult cut(const CutBody& body, const SurfaceMesh& slab, const CutOptions& op
   fault_point("cut.begin");
   SurfaceMesh moved = slab;
   moved.faces.resize(slab.triangle_count());
+  match_channels(body.mesh(), moved);
   const std::vector<std::uint32_t> twin = build_twins(slab);
   if (result.reason = refuse_slab(slab, twin, options); !result.reason.empty()) return result;
   const Real edge_length = options.edge_length > 0 ? options.edge_length : mean_edge_length(body.mesh());

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/fragment/cut_checks.h"
+#include "engine/mesh/attributes.h"
 
 namespace sherd {
 namespace {
@@ -28,6 +29,7 @@ CutBody::CutBody(SurfaceMesh mesh) : CutBody(std::move(mesh), check_numbers(mesh
 CutBody::CutBody(SurfaceMesh&& mesh, std::string defect)
     : defect_(std::move(defect)), operand_(defect_.empty() ? with_attributes(std::move(mesh)) : SurfaceMesh{}) {
   if (!defect_.empty()) return;
+  if (defect_ = check_attributes(operand_.mesh); !defect_.empty()) return;
   if (const std::string text = check_manifold(operand_.mesh, operand_.twin); !text.empty()) {
     defect_ = "the body is not a closed manifold: " + text;
     return;

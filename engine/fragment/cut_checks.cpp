@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/mesh/intersections.h"
+#include "kernels/core/parallel.h"
 
 namespace sherd {
 namespace {
@@ -20,6 +21,56 @@ TriangleBvh tree_of(const Carving& carving, const std::vector<std::uint32_t>& fa
     soup.triangles.push_back({n, n + 1, n + 2});
   }
   return TriangleBvh(soup);
+}
+
+using Corners = std::array<Vec3, 3>;
+
+// Rounding of a dot product of differences, relative to the lengths of the vectors, with room to spare.
+constexpr Real kMargin = 1e-14;
+
+// Does some plane along an edge of `a` and its normal have a on one side and b clearly on the other?
+bool edge_separates(const Corners& a, const Corners& b) {
+  const Vec3 n = cross(a[1] - a[0], a[2] - a[0]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &o = a[k], m = cross(a[(k + 1) % 3] - o, n);
+    Real low = 1e300, high = -1e300, size = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      high = std::max(high, dot(m, a[j] - o)), low = std::min(low, dot(m, b[j] - o));
+      size = std::max({size, norm2(a[j] - o), norm2(b[j] - o)});
+    }
+    if (low - high > kMargin * norm(m) * std::sqrt(size)) return true;
+  }
+  return false;
+}
+
+// a[i] and b[j] are one vertex: does a plane between an edge of a and one of b there separate all the rest?
+bool edges_part(const Corners& a, std::size_t i, const Corners& b, std::size_t j) {
+  const Vec3 &o = a[i], n = cross(a[1] - a[0], a[2] - a[0]);
+  const Vec3 p[2] = {a[(i + 1) % 3] - o, a[(i + 2) % 3] - o}, q[2] = {b[(j + 1) % 3] - o, b[(j + 2) % 3] - o};
+  const Real lp[2] = {norm(p[0]), norm(p[1])}, lq[2] = {norm(q[0]), norm(q[1])};
+  for (int s = 0; s < 2; ++s)
+    for (int t = 0; t < 2; ++t) {
+      Vec3 m = cross(n, p[s] * lq[t] + q[t] * lp[s]);
+      if (dot(m, p[s]) > 0) m = -1.0 * m;
+      const Real margin = kMargin * norm(m);
+      if (dot(m, p[0]) < -margin * lp[0] && dot(m, p[1]) < -margin * lp[1] && dot(m, q[0]) > margin * lq[0] &&
+          dot(m, q[1]) > margin * lq[1])
+        return true;
+    }
+  return false;
+}
+
+// Exact, but spares the exact arithmetic on the many parts of one plane that lie side by side.
+bool meet(const Carving& carving, std::uint32_t f, std::uint32_t g) {
+  const Triangle &s = carving.triangle(f), &t = carving.triangle(g);
+  const Corners a = carving.corners(f), b = carving.corners(g);
+  std::size_t shared = 0, i = 0, j = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t l = 0; l < 3; ++l)
+      if (s[k] == t[l]) ++shared, i = k, j = l;
+  if (shared == 0 && (edge_separates(a, b) || edge_separates(b, a))) return false;
+  if (shared == 1 && edges_part(a, i, b, j)) return false;
+  return triangles_intersect(s, a, t, b);
 }
 
 }  // namespace
@@ -90,53 +141,63 @@ std::string check_links(const Carving& carving) {
 }
 
 BadFaces find_bad_faces(const Carving& carving, const std::vector<std::uint32_t>& tested, Real least_area) {
-  BadFaces bad;
   const std::uint32_t shift = carving.body_faces();
-  const auto report = [&](std::uint32_t i, const char* reason) {
-    if (bad.faces.empty()) bad.reason = reason;
-    bad.faces.push_back(i);
-  };
-  const auto meet = [&](std::uint32_t f, std::uint32_t g) {
-    return triangles_intersect(carving.triangle(f), carving.corners(f), carving.triangle(g), carving.corners(g));
-  };
   std::vector<std::uint32_t> others;
   for (std::uint32_t i = 0, next = 0; i < carving.faces.size(); ++i) {
     if (next < tested.size() && tested[next] == i) {
       ++next;
-      const auto c = carving.corners(shift + i);
-      if (!(0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) > least_area)) report(i, "a part of a cut face has no area");
     } else if (carving.faces[i].alive) {
       others.push_back(i);
     }
   }
-  const TriangleBvh tree = tree_of(carving, tested);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  tree.overlapping_pairs(tree, pairs);
-  for (const auto& [i, j] : pairs)
-    if (i < j && meet(shift + tested[i], shift + tested[j])) {
-      report(tested[i], "two parts of cut faces intersect after rounding");
-      bad.faces.push_back(tested[j]);
-    }
-  tree.overlapping_pairs(carving.body().bvh(), pairs);
-  for (const auto& [i, f] : pairs)
-    if (carving.alive(f) && meet(shift + tested[i], f))
-      report(tested[i], "a part of a cut face intersects a whole face");
-  const auto against_other = [&](std::uint32_t i, std::uint32_t j) {
-    if (meet(shift + tested[i], shift + others[j])) report(tested[i], "a part of a cut face intersects a wall");
+  const bool few = tested.size() < kFew;
+  const TriangleBvh tree = tree_of(carving, tested), other_tree = few ? tree_of(carving, {}) : tree_of(carving, others);
+  const auto box_of = [&](std::uint32_t f) {
+    Box box;
+    for (const Vec3& p : carving.corners(f)) box.grow(p);
+    return box;
   };
-  if (tested.size() < kFew) {
+  std::vector<std::uint32_t> close;  // when few: instead of the tree
+  if (few)
+    for (const std::uint32_t j : others)
+      if (tree.box().overlaps(box_of(shift + j))) close.push_back(j);
+  struct Found {
+    std::uint32_t face;
+    const char* reason;
+  };
+  constexpr std::size_t kGrain = 64;
+  std::vector<std::vector<Found>> found((tested.size() + kGrain - 1) / kGrain);
+  parallel_for_chunks(tested.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    auto& list = found[begin / kGrain];
     std::vector<std::uint32_t> near;
-    for (std::uint32_t j = 0; j < others.size(); ++j) {
-      Box box;
-      for (const Vec3& p : carving.corners(shift + others[j])) box.grow(p);
-      if (!tree.box().overlaps(box)) continue;
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t own = tested[i], f = shift + own;
+      const auto c = carving.corners(f);
+      if (!(0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) > least_area))
+        list.push_back({own, "a part of a cut face has no area"});
+      const Box box = box_of(f);
       tree.overlapping(box, near);
-      for (const std::uint32_t i : near) against_other(i, j);
+      for (const std::uint32_t j : near)
+        if (j > i && meet(carving, f, shift + tested[j])) {
+          list.push_back({own, "two parts of cut faces intersect after rounding"});
+          list.push_back({tested[j], "two parts of cut faces intersect after rounding"});
+        }
+      carving.body().bvh().overlapping(box, near);
+      for (const std::uint32_t g : near)
+        if (carving.alive(g) && meet(carving, f, g))
+          list.push_back({own, "a part of a cut face intersects a whole face after rounding"});
+      other_tree.overlapping(box, near);
+      for (std::uint32_t& j : near) j = others[j];
+      for (const std::uint32_t j : few ? close : near)
+        if (meet(carving, f, shift + j)) list.push_back({own, "a part of a cut face intersects a wall after rounding"});
     }
-  } else {
-    tree.overlapping_pairs(tree_of(carving, others), pairs);
-    for (const auto& [i, j] : pairs) against_other(i, j);
-  }
+  });
+  BadFaces bad;
+  for (const auto& list : found)
+    for (const Found& one : list) {
+      if (bad.faces.empty()) bad.reason = one.reason;
+      bad.faces.push_back(one.face);
+    }
   std::sort(bad.faces.begin(), bad.faces.end());
   bad.faces.erase(std::unique(bad.faces.begin(), bad.faces.end()), bad.faces.end());
   return bad;

@@ -88,6 +88,7 @@ class CutSurface {
     FaceArrangement face;
     for (std::size_t k = 0; k < 3; ++k) {
       face.points.push_back(make_vertex(operand_.corners(part.face)[k]));
+      face.edges.push_back(static_cast<std::uint8_t>(1u << k | 1u << (k + 2) % 3));
       part.vertices.push_back(weld(operand_.mesh.triangles[part.face][k]));
     }
     std::vector<std::uint32_t> used;
@@ -99,6 +100,7 @@ class CutSurface {
     used.erase(std::unique(used.begin(), used.end()), used.end());
     for (std::uint32_t p : used) {
       face.points.push_back(piercing_.points[p]);
+      face.edges.push_back(edge_bit(part.face, piercing_.crossings[p]));
       part.vertices.push_back(first_crossing_ + p);
     }
     const auto local = [&](std::uint32_t p) {
@@ -109,6 +111,14 @@ class CutSurface {
       face.segments.push_back({local(s.start), local(s.end)});
     }
     part.triangulation = triangulate_face(face);
+  }
+
+  // Of the face's edge that the crossing lies on; 0 for one inside the face.
+  std::uint8_t edge_bit(std::uint32_t face, const Crossing& c) const {
+    for (std::uint32_t k = 0; k < 3; ++k)
+      if (c.edge_operand == which_ && operand_.edge_id(3 * face + k) == c.edge)
+        return static_cast<std::uint8_t>(1u << k);
+    return 0;
   }
 
   bool set_fate(std::uint32_t face, Fate wanted) {

@@ -18,7 +18,7 @@ class Triangulator {
  public:
   explicit Triangulator(const FaceArrangement& face)
       : face_(face),
-        orient_({face.points[0].position, face.points[1].position, face.points[2].position}, face.points) {}
+        orient_({face.points[0].position, face.points[1].position, face.points[2].position}, face.points, face.edges) {}
 
   FaceTriangulation run() {
     if (orient_.degenerate()) return fail("a cut face has no area");

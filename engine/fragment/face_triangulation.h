@@ -12,6 +12,8 @@ namespace sherd {
 struct FaceArrangement {
   std::vector<ArrangementPoint> points;                // the three corners, then the crossings
   std::vector<std::array<std::uint32_t, 2>> segments;  // start, end; they meet in end points only
+  // Per point: bit k for one that lies exactly on the face's edge k (corner k has bits k and k - 1). Or empty: unknown.
+  std::vector<std::uint8_t> edges;
 };
 
 struct FaceTriangulation {

@@ -44,7 +44,8 @@ TEST(ArrangementPoint, OrientationOfCrossingsIsExactOnAndNextToALine) {
     std::vector<ArrangementPoint> points;
     for (int k = 0; k < 3; ++k)
       points.push_back(vertical_crossing(x[k], y[k], random.uniform(0.1, 1), random.uniform(0.1, 1)));
-    PlanarOrientation orient(kFace, points);
+    const std::vector<std::uint8_t> unknown;
+    PlanarOrientation orient(kFace, points, unknown);
     const int expected = orient2d(x[0], y[0], x[1], y[1], x[2], y[2]);
     ++seen[expected + 1];
     ASSERT_EQ(orient(0, 1, 2), expected);
