@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "engine/material/scalar_field.h"
@@ -10,7 +11,9 @@
 namespace sherd {
 namespace {
 
-constexpr Real kMaxStretch = 2;  // of the offset at a kink
+constexpr Real kMaxStretch = 2;         // of the offset at a kink
+constexpr int kMaxHalvings = 6;         // of the thickness at a fold
+constexpr std::size_t kMaxPairs = 200;  // of intersecting slab faces looked at in one go
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 Edge sorted(std::uint32_t a, std::uint32_t b) {
@@ -85,8 +88,10 @@ Refined refine(const CrackSheet& sheet) {
   return r;
 }
 
-SurfaceMesh offset(const Refined& r, const std::vector<Real>& thickness) {
+// node: of each slab vertex.
+SurfaceMesh offset(const Refined& r, const std::vector<Real>& thickness, std::vector<std::uint32_t>& node) {
   const std::size_t n = r.position.size();
+  node.clear();
   Vec3Column normal(n);
   std::vector<Real> area(n, 0);
   for (const Triangle& t : r.triangles) {
@@ -95,16 +100,16 @@ SurfaceMesh offset(const Refined& r, const std::vector<Real>& thickness) {
   }
   SurfaceMesh slab;
   std::vector<std::uint32_t> up(n), down(n);
-  for (std::size_t v = 0; v < n; ++v) {
+  for (std::uint32_t v = 0; v < n; ++v) {
     // Longer where the sheet bends, so that the slab's volume is thickness times area and not a cosine less.
     const Real stretch = std::min(area[v] / std::max(norm(normal[v]), 1e-300), kMaxStretch);
     const Vec3 half = r.single[v] ? Vec3{} : 0.5 * thickness[v] * stretch * normalized(normal[v]);
     up[v] = static_cast<std::uint32_t>(slab.vertices.size());
-    slab.vertices.push_back(r.position[v] + half);
+    slab.vertices.push_back(r.position[v] + half), node.push_back(v);
     down[v] = up[v];
     if (r.single[v]) continue;
     down[v] = up[v] + 1;
-    slab.vertices.push_back(r.position[v] - half);
+    slab.vertices.push_back(r.position[v] - half), node.push_back(v);
   }
   for (const Triangle& t : r.triangles) {
     slab.triangles.push_back({up[t[0]], up[t[1]], up[t[2]]}), slab.faces.side.push_back(1);
@@ -146,13 +151,25 @@ void add_uv(const Refined& r, Real scale, SurfaceMesh& slab) {
   slab.channels.push_back(std::move(uv));
 }
 
-// Empty when the slab may be cut out of a body (the design's L1).
-std::string check_slab(const SurfaceMesh& slab) {
-  for (const std::uint32_t twin : build_twins(slab))
-    if (twin == kNone) return "the slab is not closed: the sheet is not a manifold with border";
-  if (!(signed_volume(slab) > 0)) return "the slab has no positive volume";
+// Where two places of the sheet come closer than the thickness (its folds beyond the surface, mostly) the slab would
+// run into itself: it gets thinner around them, halved as often as needed. The reason when that does not help.
+std::string offset_embedded(const Refined& r, std::vector<Real> thickness, SurfaceMesh& slab) {
+  std::vector<std::uint32_t> node;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  if (count_self_intersections(slab, 1, &pairs) == 0) return {};
+  for (int halvings = 0;; ++halvings) {
+    slab = offset(r, thickness, node);
+    for (const std::uint32_t twin : build_twins(slab))
+      if (twin == kNone) return "the slab is not closed: the sheet is not a manifold with border";
+    if (count_self_intersections(slab, kMaxPairs, &pairs) == 0) return {};
+    if (halvings == kMaxHalvings) break;
+    std::vector<std::uint32_t> thin;
+    for (const auto& [f, g] : pairs)
+      for (const std::uint32_t face : {f, g})
+        for (const std::uint32_t v : slab.triangles[face]) thin.push_back(node[v]);
+    std::sort(thin.begin(), thin.end());
+    thin.erase(std::unique(thin.begin(), thin.end()), thin.end());
+    for (const std::uint32_t v : thin) thickness[v] *= 0.5;
+  }
   const Vec3 p = slab.centroid(pairs.front().first);
   return fmt::format("the slab intersects itself near ({:.4g}, {:.4g}, {:.4g}) m", p.x, p.y, p.z);
 }
@@ -168,14 +185,15 @@ std::optional<SurfaceMesh> thicken(const CrackSheet& sheet, const SlabOptions& o
   const Refined refined = refine(sheet);
   const std::vector<Real> thickness = thicknesses(refined, options, reason);
   if (!reason.empty()) return std::nullopt;
-  SurfaceMesh slab = offset(refined, thickness);
+  SurfaceMesh slab;
+  reason = offset_embedded(refined, thickness, slab);
+  if (reason.empty() && !(signed_volume(slab) > 0)) reason = "the slab has no positive volume";
+  if (!reason.empty()) return std::nullopt;
   slab.faces.resize(slab.triangle_count());
   slab.faces.kind.assign(slab.triangles.size(), FaceKind::kCrack);
   slab.faces.crack.assign(slab.triangles.size(), options.crack);
   slab.faces.material.assign(slab.triangles.size(), options.material);
   add_uv(refined, options.uv_scale, slab);
-  reason = check_slab(slab);
-  if (!reason.empty()) return std::nullopt;
   return slab;
 }
 

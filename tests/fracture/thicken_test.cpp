@@ -24,6 +24,18 @@ CrackSheet grid(std::uint32_t n, NodeState border) {
   return s;
 }
 
+// A second layer of 2 x 2 squares, displaced, and tilted by `slope` along x.
+void add_layer(CrackSheet& sheet, const Vec3& by, Real slope) {
+  const CrackSheet layer = grid(2, NodeState::kExited);
+  const auto first = static_cast<std::uint32_t>(sheet.state.size());
+  for (std::size_t v = 0; v < layer.state.size(); ++v) {
+    const Vec3 p = layer.position[v];
+    sheet.position.push_back(p + by + Vec3{0, 0, slope * (p.x - 1)});
+    sheet.normal.push_back({0, 0, 1}), sheet.state.push_back(layer.state[v]);
+  }
+  for (const Triangle& t : layer.triangles) sheet.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
 void expect_closed_embedded(const SurfaceMesh& slab) {
   for (const std::uint32_t t : build_twins(slab)) EXPECT_NE(t, kNone);
   EXPECT_EQ(count_self_intersections(slab), 0u);
@@ -105,15 +117,31 @@ TEST(Thicken, RefusesWithAReason) {
   EXPECT_FALSE(reason.empty());
   EXPECT_FALSE(thicken(grid(2, NodeState::kExited), 0, 0, reason));
   EXPECT_FALSE(reason.empty());
-  CrackSheet folded = grid(2, NodeState::kExited);  // a second layer closer than the thickness
-  const CrackSheet other = grid(2, NodeState::kExited);
-  for (std::size_t v = 0; v < other.state.size(); ++v)
-    folded.position.push_back(other.position[v] + Vec3{0.3, 0.2, 0.05}), folded.normal.push_back({0, 0, 1}),
-        folded.state.push_back(other.state[v]);
-  for (const Triangle& t : other.triangles) folded.triangles.push_back({t[0] + 9, t[1] + 9, t[2] + 9});
-  EXPECT_EQ(check_sheet(folded), "");
-  EXPECT_FALSE(thicken(folded, 0.1, 0, reason));
+  CrackSheet crossed = grid(2, NodeState::kExited);
+  add_layer(crossed, {0.3, 0.2, 0.05}, 0.4);
+  EXPECT_NE(check_sheet(crossed), "");
+  EXPECT_FALSE(thicken(crossed, 0.1, 0, reason));
   EXPECT_FALSE(reason.empty());
+}
+
+// The second layer lies over one corner of the first; with its halved thickness there, the slab is embedded.
+TEST(Thicken, ASheetThatComesCloserThanItsThicknessGetsThinnerThereAndOnlyThere) {
+  CrackSheet sheet = grid(8, NodeState::kExited);
+  add_layer(sheet, {-1.4, -1.3, 0.07}, 0);
+  EXPECT_EQ(check_sheet(sheet), "");
+  std::string reason;
+  const auto slab = thicken(sheet, 0.1, 0, reason);
+  ASSERT_TRUE(slab) << reason;
+  expect_closed_embedded(*slab);
+  std::size_t full = 0;
+  for (std::size_t v = 0; v < slab->vertex_count(); ++v) {
+    const Vec3 p = slab->vertices[v];
+    if (p.x > 2 || p.y > 2) {
+      EXPECT_NEAR(std::abs(p.z), 0.05, 1e-15);
+      ++full;
+    }
+  }
+  EXPECT_EQ(full, 2 * (81u - 9));
 }
 
 TEST(CheckSheet, NamesEachViolation) {
