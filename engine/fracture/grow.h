@@ -13,10 +13,11 @@
 namespace sherd {
 
 struct CrackSeed {
-  Vec3 position;  // on the surface, material space
-  Vec3 normal;    // outward unit surface normal there
+  Vec3 position;  // on the surface (or inside), material space
+  Vec3 normal;    // outward unit surface normal there; of no meaning inside
   PrincipalStress stress;
   std::uint32_t vertex = kNone;  // mesh vertex it came from
+  bool interior = false;         // a slit inside the body, all of it
 };
 
 struct GrowthOptions {

@@ -12,6 +12,13 @@ constexpr Real kFanRadius = 0.7;   // of h
 constexpr Real kFanTurn = 0.37;    // of the fan's angle: never symmetric, so never along a mesh edge
 constexpr Real kMinInward = 0.35;  // sine of the least angle between crack plane and surface
 
+// The coordinate axis farthest from e's direction.
+Vec3 least_axis(const Vec3& e) {
+  const Real x = std::abs(e.x), y = std::abs(e.y), z = std::abs(e.z);
+  if (x <= y && x <= z) return {1, 0, 0};
+  return y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+}
+
 }  // namespace
 
 Vec3 canonical_sign(const Vec3& e) {
@@ -24,7 +31,8 @@ std::string open_seed(Growth& g, const CrackSeed& seed) {
   if (!is_finite(seed.position) || !is_finite(seed.normal) || !is_finite(seed.stress.direction) ||
       !std::isfinite(seed.stress.value))
     return "the seed is not finite";
-  const Vec3 e = normalized(canonical_sign(seed.stress.direction)), n = normalized(seed.normal);
+  const Vec3 e = normalized(canonical_sign(seed.stress.direction));
+  const Vec3 n = seed.interior ? least_axis(e) : normalized(seed.normal);
   if (norm2(e) == 0 || norm2(n) == 0) return "the seed has no direction";
   const Vec3 inward = -(n - dot(n, e) * e);
   if (norm(inward) < kMinInward) return "the crack plane is tangent to the surface";
@@ -44,6 +52,7 @@ std::string open_seed(Growth& g, const CrackSeed& seed) {
       p = push_out(g, p, e), state = NodeState::kExited;
     ring.push_back(g.sheet.add_node(p, e, state));
   }
+  if (seed.interior && inside < kFanSize) return "the first fan of an interior seed reaches the surface";
   if (inside < 2) return "fewer than two nodes of the first fan lie inside the body";
   for (std::size_t k = 0; k < ring.size(); ++k)
     if (!g.sheet.add({Triangle{centre, ring[k], ring[(k + 1) % ring.size()]}})) return "the first fan does not fit";
