@@ -23,6 +23,14 @@ bool any_node(const Growth& g, NodeState s) {
   return false;
 }
 
+// Does stress drive any node on? (A node that only follows its neighbours does not count.)
+bool is_driven(const Growth& g) {
+  for (const FrontLoop& loop : g.loops)
+    for (const std::uint32_t v : loop)
+      if (g.sheet.state[v] == NodeState::kActive && g.sheet.stress_known[v] && exceeds_strength(g, v)) return true;
+  return false;
+}
+
 // A front whose greater part runs along another layer of its own sheet missed it and would spiral on: the arms of a
 // crack behind a cavity can pass each other so. Ending the attempt at once saves asking for stress.
 bool spirals(Growth& g) {
@@ -73,7 +81,7 @@ std::string check_options(const TriangleBvh& body, const GrowthOptions& o) {
 
 std::string open_sheet(Growth& g, const CrackSheet& sheet) {
   g.sheet.load(sheet);
-  g.loops = border_loops(sheet);
+  g.loops = sheet.front.empty() ? border_loops(sheet) : sheet.front;
   if (g.loops.empty()) return "the sheet has no front";
   for (NodeState& s : g.sheet.state)
     if (s == NodeState::kBlocked) s = NodeState::kArrested;  // tried again under the new stress
@@ -94,6 +102,10 @@ bool Attempt::step() {
   Growth& g = growth_;
   if (ended_ || spiral_ || steps_ >= limit_) return false;
   label_front(g);
+  if (is_driven(g))
+    stopped_.reset();
+  else if (!stopped_)
+    stopped_ = std::make_shared<CrackSheet>(extract());
   spiral_ = spirals(g);
   if (spiral_) return false;
   if (any_node(g, NodeState::kActive)) {
@@ -131,12 +143,20 @@ void Attempt::judge(GrowthResult& result) const {
 }
 
 std::string Attempt::test(const CrackSheet& sheet) const {
-  std::string reason = check_sheet(sheet);
+  // Every edit kept the sheet from meeting itself; its slab, tested next, would meet itself too.
+  std::string reason = check_topology(sheet);
   if (!reason.empty()) return reason;
   const GrowthOptions& o = growth_.options;
   if (o.accept) return o.accept(sheet);
   if (o.thickness > 0 || o.thickness_field) thicken(sheet, {o.thickness, o.thickness_field}, reason);
   return reason;
+}
+
+CrackSheet Attempt::extract() const {
+  CrackSheet sheet = growth_.sheet.extract(growth_.loops);
+  sheet.reference_stress = growth_.reference_stress;
+  sheet.seed_normal = growth_.seed_normal;
+  return sheet;
 }
 
 GrowthResult Attempt::finish() {
@@ -147,9 +167,8 @@ GrowthResult Attempt::finish() {
   judge(result);
   if (result.outcome == GrowthOutcome::kFailed) return result;
   smooth_interior(g);
-  result.sheet = g.sheet.extract();
-  result.sheet.reference_stress = g.reference_stress;
-  result.sheet.seed_normal = g.seed_normal;
+  result.sheet = extract();
+  if (result.outcome == GrowthOutcome::kArrested) result.sheet.stopped = stopped_;
   result.reason = test(result.sheet);
   if (!result.reason.empty()) {
     result.outcome = GrowthOutcome::kFailed;

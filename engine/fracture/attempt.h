@@ -19,11 +19,13 @@ class Attempt {
  private:
   void judge(GrowthResult& result) const;
   std::string test(const CrackSheet& sheet) const;
+  CrackSheet extract() const;
 
   Growth growth_;
   int level_, steps_ = 0, limit_;
   bool ended_ = false;  // no active node is left
   bool spiral_ = false;
+  std::shared_ptr<const CrackSheet> stopped_;
 };
 
 // Why growth with these options cannot start, or an empty string.

@@ -38,6 +38,11 @@ Vec3 crack_normal(const Growth& g, const Vec3& eigenvector, const Vec3& previous
   return normalized(kMinTurnCosine * previous + std::sqrt(1 - kMinTurnCosine * kMinTurnCosine) * side);
 }
 
+// Turns the crack at a node to its stress.
+void turn(Growth& g, std::uint32_t v) {
+  g.sheet.normal.set(v, crack_normal(g, g.sheet.stress[v].direction, g.sheet.normal[v]));
+}
+
 void ask_field(Growth& g) {
   Vec3Column points;
   FrontLoop nodes;
@@ -45,7 +50,10 @@ void ask_field(Growth& g) {
     for (const std::uint32_t v : loop) {
       const NodeState s = g.sheet.state[v];
       if ((s != NodeState::kActive && s != NodeState::kArrested) || g.sheet.stress_known[v]) continue;
-      if (!g.body.inside(g.sheet.position[v])) continue;  // it exits when it is advanced
+      if (!g.body.inside(g.sheet.position[v])) {
+        g.sheet.state[v] = NodeState::kActive;  // it exits when it is advanced
+        continue;
+      }
       nodes.push_back(v), points.push_back(g.sheet.position[v]);
     }
   if (nodes.empty()) return;
@@ -53,13 +61,8 @@ void ask_field(Growth& g) {
   g.field.principal_stress(points, stress);
   for (std::size_t i = 0; i < nodes.size() && i < stress.size(); ++i) {
     g.sheet.stress[nodes[i]] = stress[i], g.sheet.stress_known[nodes[i]] = 1;
-    g.sheet.normal.set(nodes[i], crack_normal(g, stress[i].direction, g.sheet.normal[nodes[i]]));
+    if (exceeds_strength(g, nodes[i])) turn(g, nodes[i]);
   }
-}
-
-Real strength_at(const Growth& g, std::uint32_t v) {
-  const ScalarField* field = g.options.propagation_field;
-  return field ? field->at(g.sheet.position[v]) : g.options.propagation_strength;
 }
 
 bool lags_behind(const Growth& g, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -149,13 +152,22 @@ Vec3 outward_direction(const Growth& g, std::uint32_t a, std::uint32_t b, std::u
 }
 
 bool is_clear(const Growth& g, std::uint32_t a, std::uint32_t b) {
-  std::vector<TriangleBvh::Hit> hits;
-  g.body.all_hits(g.sheet.position[a], along(g, a, b), 0, 1, hits);
-  return hits.empty();
+  Growth::Clear& known = g.clear[static_cast<std::uint64_t>(a) << 32 | b];
+  if (known.moves_a != g.sheet.moves[a] || known.moves_b != g.sheet.moves[b]) {
+    std::vector<TriangleBvh::Hit> hits;
+    g.body.all_hits(g.sheet.position[a], along(g, a, b), 0, 1, hits);
+    known = {g.sheet.moves[a], g.sheet.moves[b], hits.empty()};
+  }
+  return known.clear;
 }
 
 bool is_dead(const Growth& g, std::uint32_t a, std::uint32_t b) {
   return is_exited(g, a) && is_exited(g, b) && is_clear(g, a, b);
+}
+
+bool exceeds_strength(const Growth& g, std::uint32_t v) {
+  const ScalarField* field = g.options.propagation_field;
+  return g.sheet.stress[v].value >= (field ? field->at(g.sheet.position[v]) : g.options.propagation_strength);
 }
 
 void label_front(Growth& g) {
@@ -166,10 +178,12 @@ void label_front(Growth& g) {
       NodeState& s = g.sheet.state[v];
       if ((s != NodeState::kActive && s != NodeState::kArrested) || !g.sheet.stress_known[v]) continue;
       const bool was_arrested = s == NodeState::kArrested;
-      s = g.sheet.stress[v].value >= strength_at(g, v) ? NodeState::kActive : NodeState::kArrested;
+      s = exceeds_strength(g, v) ? NodeState::kActive : NodeState::kArrested;
       if (s == NodeState::kArrested && was_arrested &&
-          lags_behind(g, loop[(i + loop.size() - 1) % loop.size()], v, loop[(i + 1) % loop.size()]))
+          lags_behind(g, loop[(i + loop.size() - 1) % loop.size()], v, loop[(i + 1) % loop.size()])) {
         s = NodeState::kActive;
+        turn(g, v);
+      }
     }
 }
 

@@ -22,6 +22,13 @@ struct Growth {
   Real reference_stress = 0;  // Pa, the stress that gives the nominal step length
   SheetMesh sheet;
   std::vector<FrontLoop> loops;
+
+  // What is_clear() found, per node pair, while neither moves: the same border edges are asked in every step.
+  struct Clear {
+    std::uint32_t moves_a = kNone, moves_b = kNone;
+    bool clear = false;
+  };
+  mutable std::unordered_map<std::uint64_t, Clear> clear;
 };
 
 // What a node wants to do in this step.
@@ -40,7 +47,10 @@ bool is_clear(const Growth& g, std::uint32_t a, std::uint32_t b);
 // An edge of the front that needs no more growth: both nodes exited and nothing of the body between them.
 bool is_dead(const Growth& g, std::uint32_t a, std::uint32_t b);
 
-// O2: asks the field once for all front nodes whose stress is not known; sets states and crack normals.
+// Does the stress last asked for at a node reach the propagation strength there?
+bool exceeds_strength(const Growth& g, std::uint32_t v);
+// O2: asks the field once for all front nodes whose stress is not known; sets states and, where the crack goes on,
+// crack normals. A stopped node that lies outside the body (in a piece cut off since) is let go on, to exit.
 void label_front(Growth& g);
 // O3: direction and length for every loop's nodes, facing fronts steered towards each other.
 std::vector<std::vector<Advance>> front_velocity(Growth& g);

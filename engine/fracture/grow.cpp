@@ -41,8 +41,9 @@ GrowthResult grow_crack(const TriangleBvh& body, const CrackField& field, const 
   return climb_ladder(body, field, options, [&](Growth& g) { return open_seed(g, seed); });
 }
 
-GrowthResult resume_crack(const TriangleBvh& body, const CrackField& field, const CrackSheet& sheet,
+GrowthResult resume_crack(const TriangleBvh& body, const CrackField& field, const CrackSheet& shown,
                           const GrowthOptions& options) {
+  const CrackSheet& sheet = shown.stopped ? *shown.stopped : shown;
   const std::string bad = check_sheet(sheet);
   return climb_ladder(body, field, options, [&](Growth& g) { return bad.empty() ? open_sheet(g, sheet) : bad; });
 }

@@ -60,6 +60,20 @@ std::string check_fans(const CrackSheet& sheet) {
   return {};
 }
 
+// `front`, when given, lists exactly the border edges.
+std::string check_front(const CrackSheet& sheet, const std::map<Edge, int>& edges) {
+  if (sheet.front.empty()) return {};
+  std::size_t border = 0, listed = 0;
+  for (const auto& [e, uses] : edges) border += !edges.contains({e.second, e.first});
+  for (const std::vector<std::uint32_t>& loop : sheet.front)
+    for (std::size_t i = 0; i < loop.size(); ++i, ++listed) {
+      const Edge e{loop[i], loop[(i + 1) % loop.size()]};
+      if (!edges.contains(e) || edges.contains({e.second, e.first}))
+        return fmt::format("front edge {} -> {} is not on the border", e.first, e.second);
+    }
+  return listed == border ? std::string() : fmt::format("the front has {} edges, the border {}", listed, border);
+}
+
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> border_loops(const CrackSheet& sheet) {
@@ -81,11 +95,17 @@ std::vector<std::vector<std::uint32_t>> border_loops(const CrackSheet& sheet) {
   return loops;
 }
 
-std::string check_sheet(const CrackSheet& sheet) {
+std::string check_topology(const CrackSheet& sheet) {
   if (std::string bad = check_indices(sheet); !bad.empty()) return bad;
-  for (const auto& [e, uses] : directed_edges(sheet))
+  const std::map<Edge, int> edges = directed_edges(sheet);
+  for (const auto& [e, uses] : edges)
     if (uses > 1) return fmt::format("edge {} -> {} is used {} times", e.first, e.second, uses);
-  if (std::string bad = check_fans(sheet); !bad.empty()) return bad;
+  if (std::string bad = check_front(sheet, edges); !bad.empty()) return bad;
+  return check_fans(sheet);
+}
+
+std::string check_sheet(const CrackSheet& sheet) {
+  if (std::string bad = check_topology(sheet); !bad.empty()) return bad;
   SurfaceMesh mesh;
   mesh.vertices = sheet.position;
   mesh.triangles = sheet.triangles;

@@ -2,6 +2,7 @@
 // front.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,14 @@ struct CrackSheet {
   Vec3Column normal;             // unit oriented crack normal (the stress eigenvector, sign-consistent)
   std::vector<NodeState> state;  // per node
   std::vector<Triangle> triangles;
-  // For resume_crack: the largest principal stress at the seed (Pa) and the seed's crack normal (unit).
+  // For resume_crack: the largest principal stress at the seed (Pa) and the seed's crack normal (unit); the border's
+  // loops in the order in which growth visits them (border_loops() when empty); the sheet as it was when its last node
+  // stopped, before what is done to a border that stays and to the inside. Growth goes on from there, so that a crack
+  // that stops for a while ends as if it had not.
   Real reference_stress = 0;
   Vec3 seed_normal;
+  std::vector<std::vector<std::uint32_t>> front;
+  std::shared_ptr<const CrackSheet> stopped;
 };
 
 // Border loops of a sheet, each as nodes in the direction of the triangles' own border edges (the sheet lies to the
@@ -33,8 +39,11 @@ struct CrackSheet {
 std::vector<std::vector<std::uint32_t>> border_loops(const CrackSheet& sheet);
 
 // The sheet's invariants: indices and coordinates valid, oriented 2-manifold with border without pinch nodes, no
-// degenerate triangle, no self-intersection. Returns the first violation in words, or an empty string.
+// degenerate triangle, no self-intersection, `front` the border. Returns the first violation in words, or an empty
+// string.
 std::string check_sheet(const CrackSheet& sheet);
+// All of them but the self-intersections.
+std::string check_topology(const CrackSheet& sheet);
 
 // The part of a sheet inside the body.
 struct SheetExtent {

@@ -39,6 +39,7 @@ void BoxGrid::for_each_cell(const Box& box, const F& visit) const {
 }
 
 void BoxGrid::insert(std::uint32_t id, const Box& box) {
+  if (seen_.size() <= id) seen_.resize(id + 1, 0);
   for_each_cell(box, [&](std::uint64_t key) { cells_[key].push_back(id); });
 }
 
@@ -48,12 +49,13 @@ void BoxGrid::remove(std::uint32_t id, const Box& box) {
 
 void BoxGrid::query(const Box& box, std::vector<std::uint32_t>& ids) const {
   ids.clear();
+  ++query_;
   for_each_cell(box, [&](std::uint64_t key) {
     const auto cell = cells_.find(key);
-    if (cell != cells_.end()) ids.insert(ids.end(), cell->second.begin(), cell->second.end());
+    if (cell == cells_.end()) return;
+    for (const std::uint32_t id : cell->second)
+      if (seen_[id] != query_) seen_[id] = query_, ids.push_back(id);
   });
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
 }
 
 SheetMesh::SheetMesh(Real edge_length, Real clearance)
@@ -61,7 +63,7 @@ SheetMesh::SheetMesh(Real edge_length, Real clearance)
 
 std::uint32_t SheetMesh::add_node(const Vec3& p, const Vec3& n, NodeState s) {
   position.push_back(p), normal.push_back(n), state.push_back(s);
-  failures.push_back(0), stress_known.push_back(0), stress.push_back({}), incident.emplace_back();
+  failures.push_back(0), stress_known.push_back(0), stress.push_back({}), moves.push_back(0), incident.emplace_back();
   return static_cast<std::uint32_t>(state.size() - 1);
 }
 
@@ -71,14 +73,21 @@ Box SheetMesh::box_of(std::uint32_t t) const {
   return b;
 }
 
+std::array<Vec3, 3> SheetMesh::corners_of(std::uint32_t t) const {
+  const Triangle& n = triangles[t];
+  return {position[n[0]], position[n[1]], position[n[2]]};
+}
+
 void SheetMesh::link(std::uint32_t t) {
   for (const std::uint32_t v : triangles[t]) incident[v].push_back(t);
-  grid_.insert(t, box_of(t));
+  boxes_.resize(triangles.size());
+  boxes_[t] = box_of(t);
+  grid_.insert(t, boxes_[t]);
 }
 
 void SheetMesh::unlink(std::uint32_t t) {
   for (const std::uint32_t v : triangles[t]) std::erase(incident[v], t);
-  grid_.remove(t, box_of(t));
+  grid_.remove(t, boxes_[t]);
 }
 
 bool SheetMesh::hidden(std::uint32_t t, const SheetEdit& edit) const {
@@ -91,7 +100,7 @@ bool SheetMesh::make_trials(const SheetEdit& edit) {
   trials_.clear();
   const auto place = [&](std::uint32_t v) { return v == edit.moved ? edit.to : position[v]; };
   const auto append = [&](const Triangle& n) {
-    trials_.push_back({n, {place(n[0]), place(n[1]), place(n[2])}});
+    trials_.push_back({n, {place(n[0]), place(n[1]), place(n[2])}, {}, {}});
     return trial_is_sound(trials_.back());
   };
   if (edit.moved != kNone)
@@ -101,7 +110,7 @@ bool SheetMesh::make_trials(const SheetEdit& edit) {
   return std::all_of(edit.add.begin(), edit.add.end(), append);
 }
 
-bool SheetMesh::trial_is_sound(const Trial& trial) const {
+bool SheetMesh::trial_is_sound(Trial& trial) const {
   const auto& c = trial.corners;
   for (const Vec3& p : c)
     if (!is_finite(p)) return false;
@@ -109,22 +118,25 @@ bool SheetMesh::trial_is_sound(const Trial& trial) const {
   const Real longest2 = std::max({norm2(a), norm2(b), norm2(d)}), area2 = norm(n);
   if (!(area2 > kMinSine * longest2) || !(area2 > 1e-6 * edge_ * edge_)) return false;
   const Vec3 mean = normal[trial.nodes[0]] + normal[trial.nodes[1]] + normal[trial.nodes[2]];
-  return dot(n, mean) > 0;
+  if (!(dot(n, mean) > 0)) return false;
+  trial.normal = n / area2;
+  trial.outward = {normalized(cross(a, trial.normal)), normalized(cross(b, trial.normal)),
+                   normalized(cross(d, trial.normal))};
+  return true;
 }
 
 // A quick certain no for crowds(): the triangle is beyond one edge of the trial within its plane, or far above or
 // below.
 bool SheetMesh::lies_aside(const Trial& trial, const std::array<Vec3, 3>& corners) const {
   const auto& c = trial.corners;
-  const Vec3 n = normalized(cross(c[1] - c[0], c[2] - c[0]));
   const auto all = [&](const Vec3& direction, const Vec3& from, Real beyond) {
     for (const Vec3& p : corners)
       if (dot(p - from, direction) < beyond) return false;
     return true;
   };
   for (std::size_t k = 0; k < 3; ++k)
-    if (all(normalized(cross(c[(k + 1) % 3] - c[k], n)), c[k], -1e-9 * edge_)) return true;
-  return all(n, c[0], clearance_) || all(-n, c[0], clearance_);
+    if (all(trial.outward[k], c[k], -1e-9 * edge_)) return true;
+  return all(trial.normal, c[0], clearance_) || all(-trial.normal, c[0], clearance_);
 }
 
 // Layers that lie over each other keep the clearance between them, so that the slab does not meet itself; in a constant
@@ -144,7 +156,8 @@ bool SheetMesh::crowds(const Trial& trial, const Triangle& nodes, const std::arr
       if (trial.nodes[k] == nodes[l]) ++shared, mine = k, its = l;
   if (shared > 1 || lies_aside(trial, corners)) return false;
   if (shared == 1)  // the edges opposite to the common node decide
-    return wall_meets(trial, (mine + 1) % 3, corners) || wall_meets({nodes, corners}, (its + 1) % 3, trial.corners);
+    return wall_meets(trial, (mine + 1) % 3, corners) ||
+           wall_meets({nodes, corners, {}, {}}, (its + 1) % 3, trial.corners);
   for (const Real sign : {-1.0, 1.0})
     if (triangles_intersect({lifted(trial, 0, sign), lifted(trial, 1, sign), lifted(trial, 2, sign)}, corners))
       return true;
@@ -152,13 +165,14 @@ bool SheetMesh::crowds(const Trial& trial, const Triangle& nodes, const std::arr
 }
 
 bool SheetMesh::trial_is_clear(const Trial& trial, const SheetEdit& edit) {
-  grid_.query(box_around(trial.corners, clearance_), candidates_);
-  const Box tight = box_around(trial.corners, 0);
+  // Nothing of crowds() reaches farther than the clearance along an axis.
+  const Box wide = box_around(trial.corners, 1.001 * clearance_), tight = box_around(trial.corners, 0);
+  grid_.query(wide, candidates_);
   for (const std::uint32_t t : candidates_) {
-    if (hidden(t, edit)) continue;
+    if (!boxes_[t].overlaps(wide) || hidden(t, edit)) continue;
     const Triangle& n = triangles[t];
-    const std::array<Vec3, 3> c{position[n[0]], position[n[1]], position[n[2]]};
-    if (box_around(c, 0).overlaps(tight) && triangles_intersect(trial.nodes, trial.corners, n, c)) return false;
+    const std::array<Vec3, 3> c = corners_of(t);
+    if (boxes_[t].overlaps(tight) && triangles_intersect(trial.nodes, trial.corners, n, c)) return false;
     if (crowds(trial, n, c)) return false;
   }
   return true;
@@ -174,10 +188,10 @@ bool SheetMesh::apply(const SheetEdit& edit) {
   for (const std::uint32_t t : edit.remove) unlink(t), alive[t] = 0;
   if (edit.moved != kNone) {
     const std::vector<std::uint32_t> touched = incident[edit.moved];
-    for (const std::uint32_t t : touched) grid_.remove(t, box_of(t));
+    for (const std::uint32_t t : touched) grid_.remove(t, boxes_[t]);
     position.set(edit.moved, edit.to);
-    stress_known[edit.moved] = 0;
-    for (const std::uint32_t t : touched) grid_.insert(t, box_of(t));
+    stress_known[edit.moved] = 0, ++moves[edit.moved];
+    for (const std::uint32_t t : touched) boxes_[t] = box_of(t), grid_.insert(t, boxes_[t]);
   }
   for (const Triangle& n : edit.add) {
     triangles.push_back(n), alive.push_back(1);
@@ -224,7 +238,7 @@ bool SheetMesh::has_layer(std::uint32_t v, Real reach) {
   return std::any_of(candidates_.begin(), candidates_.end(), [&](std::uint32_t t) {
     const Triangle& n = triangles[t];
     if (n[0] == v || n[1] == v || n[2] == v) return false;
-    return triangles_intersect({a, b, b}, {position[n[0]], position[n[1]], position[n[2]]});
+    return triangles_intersect({a, b, b}, corners_of(t));
   });
 }
 
@@ -235,7 +249,7 @@ void SheetMesh::load(const CrackSheet& sheet) {
   for (std::uint32_t t = 0; t < triangles.size(); ++t) link(t);
 }
 
-CrackSheet SheetMesh::extract() const {
+CrackSheet SheetMesh::extract(const std::vector<std::vector<std::uint32_t>>& front) const {
   CrackSheet sheet;
   std::vector<std::uint32_t> map(state.size(), kNone);
   for (std::size_t v = 0; v < state.size(); ++v) {
@@ -245,6 +259,9 @@ CrackSheet SheetMesh::extract() const {
   }
   for (std::size_t t = 0; t < triangles.size(); ++t)
     if (alive[t]) sheet.triangles.push_back({map[triangles[t][0]], map[triangles[t][1]], map[triangles[t][2]]});
+  sheet.front = front;
+  for (std::vector<std::uint32_t>& loop : sheet.front)
+    for (std::uint32_t& v : loop) v = map[v];
   return sheet;
 }
 

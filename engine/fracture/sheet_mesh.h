@@ -15,7 +15,7 @@ class BoxGrid {
   explicit BoxGrid(Real cell) : inverse_cell_(1 / cell) {}
   void insert(std::uint32_t id, const Box& box);
   void remove(std::uint32_t id, const Box& box);
-  // Ids whose cells overlap those of `box`, ascending, each once.
+  // Ids whose cells overlap those of `box`, each once, in an order that means nothing.
   void query(const Box& box, std::vector<std::uint32_t>& ids) const;
 
  private:
@@ -23,6 +23,8 @@ class BoxGrid {
   void for_each_cell(const Box& box, const F& visit) const;
   Real inverse_cell_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
+  mutable std::vector<std::uint32_t> seen_;  // per id: the last query that met it
+  mutable std::uint32_t query_ = 0;
 };
 
 // One transaction: triangles to remove, at most one node to move, triangles to add. The caller keeps the topology right
@@ -55,14 +57,15 @@ class SheetMesh {
   bool has_layer(std::uint32_t v, Real reach);
   // Nodes and triangles of a sheet that check_sheet() accepts; this mesh is empty.
   void load(const CrackSheet& sheet);
-  // Without dead triangles and unused nodes; node order is kept.
-  CrackSheet extract() const;
+  // Without dead triangles and unused nodes; the order of nodes and triangles is kept. `front`: loops to translate.
+  CrackSheet extract(const std::vector<std::vector<std::uint32_t>>& front) const;
 
   Vec3Column position, normal;
   std::vector<NodeState> state;
   std::vector<std::uint8_t> failures;      // refused advances in a row, per node
   std::vector<std::uint8_t> stress_known;  // `stress` belongs to the node's present position
   std::vector<PrincipalStress> stress;
+  std::vector<std::uint32_t> moves;  // per node: how often it moved
   std::vector<Triangle> triangles;
   std::vector<std::uint8_t> alive;                   // per triangle
   std::vector<std::vector<std::uint32_t>> incident;  // per node: alive triangles
@@ -71,19 +74,23 @@ class SheetMesh {
   struct Trial {
     Triangle nodes;
     std::array<Vec3, 3> corners;
+    Vec3 normal;                  // unit
+    std::array<Vec3, 3> outward;  // unit, in the plane, of edge k -> k + 1
   };
   bool make_trials(const SheetEdit& edit);
-  bool trial_is_sound(const Trial& trial) const;
+  bool trial_is_sound(Trial& trial) const;
   bool trial_is_clear(const Trial& trial, const SheetEdit& edit);
   bool lies_aside(const Trial& trial, const std::array<Vec3, 3>& corners) const;
   bool crowds(const Trial& trial, const Triangle& nodes, const std::array<Vec3, 3>& corners) const;
   bool hidden(std::uint32_t t, const SheetEdit& edit) const;
   Box box_of(std::uint32_t t) const;
+  std::array<Vec3, 3> corners_of(std::uint32_t t) const;
   void link(std::uint32_t t);
   void unlink(std::uint32_t t);
 
   Real edge_, clearance_;
   BoxGrid grid_;
+  std::vector<Box> boxes_;     // per triangle
   std::vector<Trial> trials_;  // scratch of apply
   std::vector<std::uint32_t> candidates_;
 };
