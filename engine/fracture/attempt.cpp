@@ -16,6 +16,15 @@ struct Rung {
 };
 constexpr Rung kLadder[kRungCount] = {{0, 1, 1}, {0.5, 1, 1}, {0.8, 1, 1}, {1, 1, 1}, {1, 0.8, 2.0 / 3}};
 
+// Steering deflects a crack from the field, so the far steering that brings badly aligned fronts together is only used
+// where the near one failed.
+struct Retreat {
+  int steps;         // to take back
+  Real range, full;  // of h: Growth::steer_range, steer_full
+};
+constexpr Retreat kRetreats[] = {{12, 16, 6}, {24, 16, 6}, {1 << 20, 24, 9}};
+constexpr int kSaveEvery = 3;  // steps
+
 bool any_node(const Growth& g, NodeState s) {
   for (const FrontLoop& loop : g.loops)
     for (const std::uint32_t v : loop)
@@ -80,8 +89,7 @@ std::string check_options(const TriangleBvh& body, const GrowthOptions& o) {
 }
 
 std::string open_sheet(Growth& g, const CrackSheet& sheet) {
-  g.sheet.load(sheet);
-  g.loops = sheet.front.empty() ? border_loops(sheet) : sheet.front;
+  g.restart(sheet);
   if (g.loops.empty()) return "the sheet has no front";
   for (NodeState& s : g.sheet.state)
     if (s == NodeState::kBlocked) s = NodeState::kArrested;  // tried again under the new stress
@@ -101,6 +109,7 @@ Attempt::Attempt(const TriangleBvh& body, const CrackField& field, const GrowthO
 bool Attempt::step() {
   Growth& g = growth_;
   if (ended_ || spiral_ || steps_ >= limit_) return false;
+  if (level_ == 0 && steps_ % kSaveEvery == 0) history_.push_back({steps_, extract()});
   label_front(g);
   if (is_driven(g))
     stopped_.reset();
@@ -116,6 +125,20 @@ bool Attempt::step() {
   }
   remesh_front(g);
   ++steps_;
+  return true;
+}
+
+bool Attempt::retreat() {
+  if (history_.empty() || retreats_ == std::size(kRetreats)) return false;
+  const Retreat& r = kRetreats[retreats_++];
+  while (history_.size() > 1 && history_.back().step > steps_ - r.steps) history_.pop_back();
+  const Saved saved = history_.back();
+  history_.pop_back();  // step() saves it again
+  growth_.restart(saved.sheet);
+  growth_.steer_range = r.range, growth_.steer_full = r.full;
+  steps_ = saved.step;
+  ended_ = spiral_ = false;
+  stopped_.reset();
   return true;
 }
 

@@ -13,6 +13,9 @@ class Attempt {
   Growth& growth() { return growth_; }
   // Labels the front and moves it on. Returns false when growth has ended, for whatever reason.
   bool step();
+  // After a failure: takes back the last steps, to let fronts that missed each other steer from farther away. Returns
+  // false when that was tried often enough.
+  bool retreat();
   // The outcome and, when the growth did not fail, the sheet with all its tests passed.
   GrowthResult finish();
 
@@ -21,7 +24,14 @@ class Attempt {
   std::string test(const CrackSheet& sheet) const;
   CrackSheet extract() const;
 
+  struct Saved {
+    int step;
+    CrackSheet sheet;
+  };
+
   Growth growth_;
+  std::vector<Saved> history_;
+  std::size_t retreats_ = 0;
   int level_, steps_ = 0, limit_;
   bool ended_ = false;  // no active node is left
   bool spiral_ = false;

@@ -11,13 +11,15 @@ namespace {
 // expensive field is asked more often than the mesh resolves) nor so long that a bend is missed.
 constexpr Real kMinStep = 0.4, kMaxStep = 0.8;
 constexpr Real kMinTurnCosine = 0.5;  // a crack turns by at most 60 degrees a step: eigenvectors swap at equal values
-constexpr Real kSteerRange = 9.0;     // of h: fronts that face each other closer than this bend towards each other
-constexpr Real kSteerFull = 1.5;      // of h: here they head straight for each other
 constexpr std::size_t kSteerLoopDistance = 5;
 // Of h: layers of the sheet keep at least this distance. Arms that meet out of line are then held edge to edge, where
 // they can be joined, instead of one running over the other.
 constexpr Real kMinClearance = 0.2;
 constexpr Real kAheadFactor = 1.5;  // of h: paper 6.3 (b), smoothness: a node this far behind both neighbours follows
+
+Real clearance(const GrowthOptions& o, Real h) {
+  return 1.1 * std::max(o.thickness_field ? o.thickness_field->upper() : o.thickness, kMinClearance * h);
+}
 
 Vec3 along(const Growth& g, std::uint32_t a, std::uint32_t b) {
   return g.sheet.position[b] - g.sheet.position[a];
@@ -99,7 +101,7 @@ void smooth_normals(Growth& g) {
 // The nearest front node that faces `a`, or nothing.
 const FrontNode* facing_node(const Growth& g, const std::vector<FrontNode>& front, const FrontNode& a) {
   const FrontNode* best = nullptr;
-  Real best2 = kSteerRange * kSteerRange * g.h * g.h;
+  Real best2 = g.steer_range * g.steer_range * g.h * g.h;
   const Vec3 at = g.sheet.position[a.node];
   for (const FrontNode& w : front) {
     const Vec3 d = g.sheet.position[w.node] - at;
@@ -121,7 +123,7 @@ const FrontNode* facing_node(const Growth& g, const std::vector<FrontNode>& fron
 void steer(Growth& g, const FrontNode& a, const FrontNode& w, Advance& advance) {
   const Vec3 d = g.sheet.position[w.node] - g.sheet.position[a.node];
   const Real length = norm(d),
-             weight = std::clamp(1 - (length - kSteerFull * g.h) / ((kSteerRange - kSteerFull) * g.h), 0.0, 1.0);
+             weight = std::clamp(1 - (length - g.steer_full * g.h) / ((g.steer_range - g.steer_full) * g.h), 0.0, 1.0);
   const Vec3 o = normalized((1 - weight) * advance.direction + weight / length * d);
   const Vec3 n = g.sheet.normal[a.node], turned = normalized(n - dot(n, o) * o);
   if (norm2(o) == 0 || norm2(turned) == 0) return;
@@ -139,8 +141,14 @@ Growth::Growth(const TriangleBvh& body_, const CrackField& field_, const GrowthO
       options(options_),
       h(edge),
       overshoot(overshoot_),
-      sheet(edge, 1.1 * std::max(options_.thickness_field ? options_.thickness_field->upper() : options_.thickness,
-                                 kMinClearance * edge)) {}
+      sheet(edge, clearance(options, edge)) {}
+
+void Growth::restart(const CrackSheet& from) {
+  sheet = SheetMesh(h, clearance(options, h));
+  sheet.load(from);
+  loops = from.front.empty() ? border_loops(from) : from.front;
+  clear.clear();
+}
 
 Vec3 outward_direction(const Growth& g, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   const Vec3 e = g.sheet.normal[b], before = normalized(along(g, a, b)), after = normalized(along(g, b, c));

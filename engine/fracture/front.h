@@ -12,12 +12,18 @@ using FrontLoop = std::vector<std::uint32_t>;
 struct Growth {
   Growth(const TriangleBvh& body_, const CrackField& field_, const GrowthOptions& options_, Real edge, Real overshoot_);
 
+  // Forgets everything that grew and takes `sheet`, which check_sheet() accepts.
+  void restart(const CrackSheet& from);
+
   const TriangleBvh& body;
   const CrackField& field;
   GrowthOptions options;
   Real h;          // edge length of this attempt, m
   Real overshoot;  // how far past the surface an exited node lies, m
   Real blend = 0;  // 0: the field's crack normal; 1: the seed's (the ladder's lambda)
+  // Of h: fronts that face each other closer than the range bend towards each other, the more the nearer; below the
+  // second distance they head straight for each other.
+  Real steer_range = 9, steer_full = 1.5;
   Vec3 seed_normal;
   Real reference_stress = 0;  // Pa, the stress that gives the nominal step length
   SheetMesh sheet;

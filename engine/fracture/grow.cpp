@@ -23,9 +23,11 @@ GrowthResult climb_ladder(const TriangleBvh& body, const CrackField& field, cons
       result.outcome = GrowthOutcome::kRejectedSeed;
       break;
     }
-    while (attempt.step()) {
-    }
-    result = attempt.finish();
+    do {
+      while (attempt.step()) {
+      }
+      result = attempt.finish();
+    } while (result.outcome == GrowthOutcome::kFailed && attempt.retreat());
     reason = result.reason;
     if (result.outcome != GrowthOutcome::kFailed) break;
   }

@@ -80,7 +80,7 @@ Tally campaign(const std::string& name, const Specimen& body, std::uint64_t seed
   return tally;
 }
 
-// Shares of the design: level 0 >= 95 % and dropped <= 1 % on solids, 75 % and 3 % on the hollow sphere.
+// Shares of the design: level 0 >= 95 % and dropped <= 1 % on solids, 90 % and 1.5 % on the hollow sphere.
 void expect_shares(const Tally& t, double level0, double dropped) {
   EXPECT_EQ(t.invalid, 0);
   EXPECT_GE(t.level0, level0 * t.jobs);
@@ -108,7 +108,7 @@ TEST(SlowCrackCampaign, PlateCracksAreValid) {
   expect_shares(campaign("plate 30:1", Specimen(make_plate(1, 1, 1.0 / 30, 1.0 / 60)), seed(3), jobs()), 0.95, 0.01);
 }
 TEST(SlowCrackCampaign, HollowSphereCracksAreValid) {
-  expect_shares(campaign("hollow sphere", Specimen(make_hollow_sphere(1, 0.6, 0.075)), seed(4), jobs()), 0.75, 0.03);
+  expect_shares(campaign("hollow sphere", Specimen(make_hollow_sphere(1, 0.6, 0.075)), seed(4), jobs()), 0.90, 0.015);
 }
 
 }  // namespace
