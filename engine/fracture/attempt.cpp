@@ -129,7 +129,8 @@ bool Attempt::step() {
 }
 
 bool Attempt::retreat() {
-  if (history_.empty() || retreats_ == std::size(kRetreats)) return false;
+  const bool missed = spiral_ || !ended_ || any_node(growth_, NodeState::kBlocked);
+  if (!(missed || growth_.steered) || history_.empty() || retreats_ == std::size(kRetreats)) return false;
   const Retreat& r = kRetreats[retreats_++];
   while (history_.size() > 1 && history_.back().step > steps_ - r.steps) history_.pop_back();
   const Saved saved = history_.back();

@@ -130,6 +130,7 @@ void steer(Growth& g, const FrontNode& a, const FrontNode& w, Advance& advance) 
   advance.direction = o;
   advance.length = std::min(advance.length, 0.45 * length);  // facing nodes never pass each other
   g.sheet.normal.set(a.node, turned);
+  g.steered = true;
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ struct Growth {
   // Of h: fronts that face each other closer than the range bend towards each other, the more the nearer; below the
   // second distance they head straight for each other.
   Real steer_range = 9, steer_full = 1.5;
+  bool steered = false;  // some front did
   Vec3 seed_normal;
   Real reference_stress = 0;  // Pa, the stress that gives the nominal step length
   SheetMesh sheet;

@@ -10,7 +10,8 @@ namespace sherd {
 struct NetSection {
   bool complete = false;  // the crack, continued along the field, separates: `through` is that sheet
   GrowthResult through;
-  Real stress = 0;  // of the ligament, Pa; 0 when not complete
+  Real stress = 0;    // of the ligament, Pa; 0 when not complete
+  Real strength = 0;  // propagation strength, its mean over the ligament, Pa
 };
 
 // `arrested`: outcome of growth in `body` under `field`. Never throws, deterministic.

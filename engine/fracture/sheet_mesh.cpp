@@ -235,9 +235,12 @@ std::vector<std::uint32_t> SheetMesh::neighbours(std::uint32_t v) const {
 bool SheetMesh::has_layer(std::uint32_t v, Real reach) {
   const Vec3 p = position[v], a = p - reach * normal[v], b = p + reach * normal[v];
   grid_.query(box_around({a, b, b}, 0), candidates_);
+  const std::vector<std::uint32_t> ring = neighbours(v);
+  const auto is_near = [&](std::uint32_t w) { return w == v || std::binary_search(ring.begin(), ring.end(), w); };
   return std::any_of(candidates_.begin(), candidates_.end(), [&](std::uint32_t t) {
     const Triangle& n = triangles[t];
-    if (n[0] == v || n[1] == v || n[2] == v) return false;
+    // The surroundings of a node whose crack turns sharply lie in its normal's way, too.
+    if (is_near(n[0]) || is_near(n[1]) || is_near(n[2])) return false;
     return triangles_intersect({a, b, b}, corners_of(t));
   });
 }
