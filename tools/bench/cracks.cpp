@@ -50,6 +50,7 @@ int run_generation_study(const CracksOptions& o) {
 }  // namespace
 
 int run_cracks(const CracksOptions& o) {
+  if (o.timing) return run_crack_timing(o.json);
   if (o.generations) return run_generation_study(o);
   nlohmann::json shapes = nlohmann::json::array();
   std::printf("%s\n", table_header().c_str());

@@ -171,6 +171,7 @@ CLI::App* add_cracks(CLI::App& app, CracksCommand& c) {
   cracks->add_option("--meshes", c.options.meshes, "folder of the statues; absent ones are skipped")
       ->capture_default_str();
   cracks->add_flag("--log", c.options.log, "a line for each crack that left the true field");
+  cracks->add_flag("--timing", c.options.timing, "times of single cracks against the sizes of bodies");
   cracks->add_flag("--generations", c.options.generations,
                    "three generations on all pieces, remeshed in between, to 64 pieces and more, then each solved");
   cracks->add_option("--pieces", c.options.pieces, "with --generations: folder for the pieces")

@@ -3,7 +3,7 @@
 #include <exception>
 
 #include "engine/fracture/thicken.h"
-#include "engine/step/stopwatch.h"
+#include "tools/campaign/cpu_clock.h"
 #include "tools/campaign/hash.h"
 
 namespace sherd::campaign {
@@ -12,7 +12,7 @@ namespace {
 // The test of a rung: the sheet must become a slab, and the slab must cut the body. Keeps both.
 std::string slab_and_cut(const Specimen& s, const GrowthOptions& options, Real min_fragment_volume,
                          const CrackSheet& sheet, Crack& crack) {
-  const Stopwatch watch(crack.report.cut_s);
+  const CpuStopwatch watch(crack.report.cut_s);
   std::string reason;
   auto slab = thicken(sheet, {.thickness = options.thickness, .field = options.thickness_field}, reason);
   if (!slab) return reason;
@@ -28,7 +28,7 @@ bool grow_and_cut(const Specimen& s, const FunctionField& field, const CrackSeed
                   Crack& crack) {
   CrackReport& r = crack.report;
   {
-    const Stopwatch watch(r.grow_s);
+    const CpuStopwatch watch(r.grow_s);
     crack.growth = grow_crack(s.body.bvh(), field, seed, options);
   }
   r.grow_s -= r.cut_s;  // the cuts happen within the growth
@@ -96,7 +96,7 @@ Crack run_crack(const Specimen& s, const FunctionField& field, const CrackSeed& 
   const std::size_t asked = field.evaluations;
   try {
     const bool accepted = grow_and_cut(s, field, seed, options, crack);
-    const Stopwatch watch(r.check_s);
+    const CpuStopwatch watch(r.check_s);
     if (accepted)
       judge(s, crack);
     else if (r.reason.empty())

@@ -28,10 +28,10 @@ struct CrackReport {
   bool body_changed = false;
   std::size_t sheet_triangles = 0, steps = 0, fragments = 0, touched = 0, stress_points = 0;
   int jitters = 0;
-  Real area = 0, removed_volume = 0;  // of the crack inside the body, m^2; of body and slab together, m^3
-  Real balance = 0;                   // |V(body) - V(fragments) - removed - dust| / V(body)
-  Real grow_s = 0, cut_s = 0, check_s = 0;
-  std::uint64_t hash = 0;  // of the outcome, the sheet and the fragments
+  Real area = 0, removed_volume = 0;        // of the crack inside the body, m^2; of body and slab together, m^3
+  Real balance = 0;                         // |V(body) - V(fragments) - removed - dust| / V(body)
+  Real grow_s = 0, cut_s = 0, check_s = 0;  // processor time of the thread
+  std::uint64_t hash = 0;                   // of the outcome, the sheet and the fragments
 };
 
 struct Crack {
