@@ -10,7 +10,7 @@
 namespace sherd {
 namespace {
 
-const char* const kLibrary = SHERD_SOURCE "/build-oracles/node_modules/manifold-3d/manifold.js";
+const char* const kLibrary = SHERD_SOURCE "/build-oracles/manifold-3d-3.5.4/package/manifold.js";
 
 void put(std::ofstream& file, std::uint32_t n) {
   file.write(reinterpret_cast<const char*>(&n), sizeof n);
