@@ -32,6 +32,7 @@ int run_generation_study(const CracksOptions& o) {
     if (!specimen) continue;
     GenerationOptions options;
     options.seed = o.campaign.seed, options.thickness = o.campaign.thickness;
+    options.edge_per_thickness = o.edge_per_thickness;
     const GenerationResult result = run_generations(*specimen, options);
     std::printf("%s", to_text(result).c_str());
     for (const std::string& text : result.warnings) std::printf("  %s\n", text.c_str());

@@ -14,7 +14,8 @@ struct CracksOptions {
   bool timing = false;                          // how long one crack takes instead
   bool log = false;                             // a line for each job that left the true field
   bool generations = false;                     // break bodies again and again instead
-  std::string pieces;                           // folder for the last pieces as PLY files
+  double edge_per_thickness = 0;
+  std::string pieces;  // folder for the last pieces as PLY files
   std::string json;
 };
 // Prints a table; 0, or 1 when a result was invalid, a body changed or a job hung.

@@ -174,6 +174,8 @@ CLI::App* add_cracks(CLI::App& app, CracksCommand& c) {
   cracks->add_flag("--timing", c.options.timing, "times of single cracks against the sizes of bodies");
   cracks->add_flag("--generations", c.options.generations,
                    "three generations on all pieces, remeshed in between, to 64 pieces and more, then each solved");
+  cracks->add_option("--edge-per-thickness", c.options.edge_per_thickness, "with --generations: of the remeshing")
+      ->check(CLI::NonNegativeNumber);
   cracks->add_option("--pieces", c.options.pieces, "with --generations: folder for the pieces")
       ->check(CLI::ExistingDirectory);
   cracks->add_option("--threads", c.threads, "0: all; 1 for times")->check(CLI::NonNegativeNumber);

@@ -57,6 +57,9 @@ void judge(const Specimen& s, Crack& crack) {
   // V2: in a body without handles whatever has its whole border outside separates.
   if (r.invalid.empty() && r.outcome == CrackOutcome::kPierced && s.simply_connected)
     r.invalid = "a complete crack does not separate a body without handles";
+  // Going through a handle cuts it open: two disks more in the surface, or more than that.
+  if (r.invalid.empty() && r.outcome == CrackOutcome::kPierced && crack.cut.euler <= s.body.euler())
+    r.invalid = "a complete crack neither separates nor opens a handle";
   r.balance = balance_of(s.body, crack.cut);
 }
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/mesh/certificate.h"
-#include "engine/mesh/remesh.h"
+#include "engine/mesh/refit.h"
 #include "engine/step/stopwatch.h"
 #include "kernels/core/parallel.h"
 #include "kernels/core/random.h"
@@ -19,7 +19,6 @@ namespace {
 
 constexpr int kSeedDraws = 20;    // for one crack of a piece
 constexpr Real kEdgesAcross = 4;  // of a piece, at least: its edge is at most this part of the volume's cube root
-constexpr Real kMaxVolumeChange = 2e-4;  // of a remeshed piece
 
 struct Part {
   SurfaceMesh mesh;
@@ -89,27 +88,17 @@ bool Breaker::crack_largest(Breakage& b, Random& random) const {
 
 void Breaker::refit_part(Part& part, Breakage& b) const {
   part.edge = edge_of(part.volume, root_.h);
-  RemeshOptions local, whole, slivers;
-  local.edge_length = part.edge;
-  whole = slivers = local;
-  local.locked = lock_good_regions(part.mesh, part.edge, 2 * part.edge);
-  slivers.iterations = 0;
-  std::size_t least = static_cast<std::size_t>(-1);
-  SurfaceMesh best;
-  for (const RemeshOptions* o : {&local, &whole, &slivers}) {
-    SurfaceMesh out;
-    const RemeshReport r = remesh(part.mesh, *o, out);
-    if (r.status != RemeshStatus::kOk || std::abs(r.volume_change) > kMaxVolumeChange || r.below_1 >= least) continue;
-    best = std::move(out), least = r.below_1;
-    if (least == 0) break;
-  }
-  if (best.triangles.empty()) {
+  SurfaceMesh fitted;
+  const RefitReport r =
+      refit(part.mesh, {.edge_length = part.edge, .edge_per_thickness = options_.edge_per_thickness}, fitted);
+  if (!r.ok) {
     ++b.row.refit_refused;
+    b.defects.push_back("refit: " + r.reason);
     return;
   }
-  const Real volume = signed_volume(best);
+  const Real volume = signed_volume(fitted);
   b.row.refit_volume_change += std::abs(volume - part.volume);
-  part.mesh = std::move(best), part.volume = volume;
+  part.mesh = std::move(fitted), part.volume = volume;
 }
 
 void certify_part(const Part& part, Breakage& b) {

@@ -14,6 +14,7 @@ struct GenerationOptions {
   int cracks_per_piece = 3;         // each in the largest part so far, without remeshing in between
   Real min_fragment_volume = 1e-4;  // of the body's volume; smaller is dust
   Real thickness = 1e-3;            // of the body's diagonal
+  Real edge_per_thickness = 0;      // of the remeshing; 0: one edge length a piece
   bool solve = true;                // every last piece by the stress stage
   std::uint64_t seed = 1;
 };
