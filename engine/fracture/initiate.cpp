@@ -6,12 +6,64 @@
 namespace sherd {
 namespace {
 
-CrackSeed make_seed(const SurfaceMesh& mesh, const SurfaceRecovery& recovery, const StressState& state,
-                    std::uint32_t vertex) {
-  const std::uint32_t corner = state.worst_corner(vertex);
-  const Eigen3 e = eigen_symmetric(state.corner_stress()[corner]);
-  return {mesh.vertices[vertex], recovery.corners()[corner].normal, {e.value[0], e.vector[0]}, vertex};
-}
+// Seeds at vertices. At a reentrant crease (a notch's tip, a cavity's inner edge) the stress on either side is that of
+// a free surface, along the side, while the crack opens by the stress between them: there the seed asks just below.
+class SeedMaker {
+ public:
+  SeedMaker(const SurfaceMesh& mesh, const SurfaceRecovery& recovery, const StressState& state)
+      : mesh_(mesh),
+        recovery_(recovery),
+        state_(state),
+        outward_(mesh.vertex_count()),
+        reentrant_(mesh.vertex_count()) {
+    constexpr Real kCrease = 0.82;  // cosine of 35 degrees, as between smooth groups
+    for (const StressCorner& corner : recovery.corners()) outward_.add(corner.vertex, corner.normal);
+    const std::vector<std::uint32_t> twin = build_twins(mesh);
+    for (std::uint32_t e = 0; e < twin.size(); ++e) {
+      if (twin[e] == kNone) continue;
+      const Triangle& t = mesh.triangles[e / 3];
+      const std::uint32_t a = t[e % 3], b = t[(e + 1) % 3];
+      const std::uint32_t across = mesh.triangles[twin[e] / 3][(twin[e] % 3 + 2) % 3];
+      const Vec3 n = normalized(mesh.area_normal2(e / 3)), m = normalized(mesh.area_normal2(twin[e] / 3));
+      if (dot(n, m) < kCrease && dot(n, mesh.vertices[across] - mesh.vertices[a]) > 0)
+        reentrant_[a] = reentrant_[b] = 1;
+    }
+  }
+
+  CrackSeed at(std::uint32_t vertex) const {
+    const std::uint32_t corner = state_.worst_corner(vertex);
+    const Eigen3 e = eigen_symmetric(state_.corner_stress()[corner]);
+    CrackSeed seed{mesh_.vertices[vertex], recovery_.corners()[corner].normal, {e.value[0], e.vector[0]}, vertex};
+    const Vec3 outward = normalized(outward_[vertex]);
+    if (!reentrant_[vertex] || norm2(outward) == 0) return seed;
+    constexpr Real kBelow = 0.5;  // of the edge length: within the first fan of the crack
+    Vec3Column place;
+    place.push_back(seed.position - kBelow * edge_length(vertex) * outward);
+    std::vector<Sym3> stress;
+    state_.evaluate(place, stress);
+    const Eigen3 below = eigen_symmetric(stress[0]);
+    if (!(below.value[0] > 0)) return seed;
+    seed.normal = outward;
+    seed.stress = {std::max(seed.stress.value, below.value[0]), below.vector[0]};
+    return seed;
+  }
+
+ private:
+  // Mean over the edges of the faces around a vertex.
+  Real edge_length(std::uint32_t vertex) const {
+    Real sum = 0, count = 0;
+    for (const Triangle& t : mesh_.triangles)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (t[k] == vertex) sum += distance(mesh_.vertices[vertex], mesh_.vertices[t[(k + 1) % 3]]), count += 1;
+    return count > 0 ? sum / count : 0;
+  }
+
+  const SurfaceMesh& mesh_;
+  const SurfaceRecovery& recovery_;
+  const StressState& state_;
+  Vec3Column outward_;  // sum of the normals of a vertex's smooth groups
+  std::vector<std::uint8_t> reentrant_;
+};
 
 // Largest principal stress over strength per vertex; 0 where there is no stress.
 std::vector<Real> relative_stress(const SurfaceMesh& mesh, const StressState& state, const ScalarField& strength) {
@@ -105,9 +157,10 @@ std::vector<std::uint32_t> find_peaks(const SurfaceMesh& mesh, std::span<const R
 
 std::vector<CrackSeed> find_seeds(const SurfaceMesh& mesh, const SurfaceRecovery& recovery, const StressState& state,
                                   const ScalarField& strength) {
+  const SeedMaker maker(mesh, recovery, state);
   std::vector<CrackSeed> seeds;
   for (const std::uint32_t v : find_peaks(mesh, relative_stress(mesh, state, strength), 1))
-    seeds.push_back(make_seed(mesh, recovery, state, v));
+    seeds.push_back(maker.at(v));
   return seeds;
 }
 
@@ -117,7 +170,7 @@ CrackSeed strongest_point(const SurfaceMesh& mesh, const SurfaceRecovery& recove
   std::uint32_t best = kNone;
   for (std::uint32_t v = 0; v < value.size(); ++v)
     if (state.worst_corner(v) != kNone && (best == kNone || value[v] > value[best])) best = v;
-  return best == kNone ? CrackSeed{} : make_seed(mesh, recovery, state, best);
+  return best == kNone ? CrackSeed{} : SeedMaker(mesh, recovery, state).at(best);
 }
 
 }  // namespace sherd

@@ -26,7 +26,8 @@ class StressCrackField final : public CrackField {
 std::vector<std::uint32_t> find_peaks(const SurfaceMesh& mesh, std::span<const Real> value, Real least);
 inline constexpr Real kPlateau = 1e-3;  // relative: below what the solve resolves
 
-// Largest stress in units of the strength first; ties by vertex index.
+// Largest stress in units of the strength first; ties by vertex index. At reentrant creases the direction (and the
+// value, where larger) is that of the stress half an edge below the surface.
 std::vector<CrackSeed> find_seeds(const SurfaceMesh& mesh, const SurfaceRecovery& recovery, const StressState& state,
                                   const ScalarField& strength);
 // The vertex with the largest principal stress of the surface in units of the strength, be it above 1 or not. The mesh

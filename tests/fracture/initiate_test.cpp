@@ -5,8 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "engine/elastostatic/solver.h"
+#include "engine/fracture/guide.h"
+#include "engine/fragment/cut.h"
+#include "engine/mesh/remesh.h"
 #include "engine/mesh/shapes.h"
 #include "kernels/core/random.h"
 
@@ -73,19 +77,12 @@ TEST(FindPeaks, TheOrderOfFacesMeansNothing) {
   EXPECT_EQ(find_peaks(mesh, waves, 0.5), peaks);
 }
 
-// A bar pulled along x: uniform stress, so the strength alone decides where the crack starts.
-class PulledBar : public testing::Test {
- protected:
-  static constexpr Real kPull = 1e6;  // Pa
-  // Strength with a dip of relative depth 0.2 at x = `weak`.
-  struct Weak final : ScalarField {
-    explicit Weak(Real weak_) : weak(weak_) {}
-    Real at(const Vec3& x) const override { return kPull * (1 - 0.2 * std::exp(-20 * (x.x - weak) * (x.x - weak))); }
-    Real lower() const override { return 0.8 * kPull; }
-    Real upper() const override { return kPull; }
-    Real weak;
-  };
-  SurfaceMesh mesh = make_box({4, 1, 1}, 0.25);
+constexpr Real kPull = 1e6;  // Pa
+
+// A body pulled along x by its faces that look that way.
+struct Pulled {
+  explicit Pulled(const SurfaceMesh& m) : mesh(m) {}
+  SurfaceMesh mesh;
   TriangleBvh bvh{mesh};
   ElasticBody body{mesh, Elastic{.mu = 3e10, .nu = 0.22}, {}};
   SurfaceRecovery recovery{mesh, {}};
@@ -99,9 +96,24 @@ class PulledBar : public testing::Test {
     Load l;
     l.face_traction.resize(mesh.triangle_count());
     for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t)
-      l.face_traction.set(t, {kPull * normalized(mesh.area_normal2(t)).x, 0, 0});
+      if (const Real x = normalized(mesh.area_normal2(t)).x; std::abs(x) > 0.99)
+        l.face_traction.set(t, {std::copysign(kPull, x), 0, 0});
     return l;
   }
+};
+
+// Uniform stress, so the strength alone decides where the crack starts.
+class PulledBar : public testing::Test, public Pulled {
+ protected:
+  PulledBar() : Pulled(make_box({4, 1, 1}, 0.25)) {}
+  // Strength with a dip of relative depth 0.2 at x = `weak`.
+  struct Weak final : ScalarField {
+    explicit Weak(Real weak_) : weak(weak_) {}
+    Real at(const Vec3& x) const override { return kPull * (1 - 0.2 * std::exp(-20 * (x.x - weak) * (x.x - weak))); }
+    Real lower() const override { return 0.8 * kPull; }
+    Real upper() const override { return kPull; }
+    Real weak;
+  };
 };
 
 TEST_F(PulledBar, UniformStressStartsOneCrackInTheMiddle) {
@@ -122,6 +134,32 @@ TEST_F(PulledBar, TheWeakPlaceBreaksUnderUniformStress) {
     EXPECT_NEAR(seeds[0].position.x, weak, 0.26);
     EXPECT_EQ(strongest_point(mesh, recovery, state, strength).position.x, seeds[0].position.x);
   }
+}
+
+// The flanks of a sharp notch are free surfaces: their own stress points along them, 60 degrees from the bar's axis.
+TEST(NotchedBar, ASeedAtTheTipOpensAlongTheBar) {
+  const Real h = 0.13;
+  const SurfaceMesh bar = make_box({2, 1, 0.4}, h);
+  // 60 degrees between the flanks.
+  const Real depth = 0.25, width = 2 * depth * std::tan(std::numbers::pi / 6);
+  const auto wedge = notch_wedge(GuidePlane{{0.013, -0.5, 0}, {1, 0, 0}, depth}, TriangleBvh(bar), width, h);
+  ASSERT_TRUE(wedge);
+  const CutResult notched = cut(bar, *wedge, {.edge_length = h});
+  ASSERT_TRUE(notched.ok) << notched.reason;
+  SurfaceMesh mesh;
+  ASSERT_EQ(remesh(notched.fragments[0], {.edge_length = h}, mesh).status, RemeshStatus::kOk);
+  const Pulled pulled(mesh);
+  ASSERT_TRUE(pulled.solution.ok);
+  const auto seeds = find_seeds(mesh, pulled.recovery, pulled.state, *constant_field(1.5 * kPull));
+  ASSERT_FALSE(seeds.empty());
+  std::size_t at_tip = 0;
+  for (const CrackSeed& seed : seeds) {
+    if (std::abs(seed.position.x - 0.013) > 0.01 || seed.position.y > -0.2) continue;
+    ++at_tip;
+    EXPECT_GT(std::abs(seed.stress.direction.x), std::cos(10 * std::numbers::pi / 180));
+    EXPECT_GT(seed.stress.value, 2 * kPull);
+  }
+  EXPECT_GT(at_tip, 0u);
 }
 
 }  // namespace
