@@ -37,6 +37,7 @@ class Carving {
   const CutOperand& slab() const { return slab_; }
   std::uint32_t body_faces() const { return body_faces_; }
   std::uint32_t body_vertices() const { return body_vertices_; }
+  std::uint32_t vertex_count() const { return body_vertices_ + static_cast<std::uint32_t>(points_.size()); }
   std::uint32_t first_crossing() const { return first_crossing_; }
   std::uint32_t crossing_operand(std::uint32_t vertex) const { return operand_of_[vertex - first_crossing_]; }
 

@@ -4,7 +4,6 @@
 #include <limits>
 #include <memory>
 
-#include "engine/mesh/attributes.h"
 #include "engine/mesh/validate_edges.h"
 
 namespace sherd {
@@ -299,75 +298,6 @@ Components find_components(const Carving& carving) {
   Components out;
   Builder(carving, out).run();
   return out;
-}
-
-namespace {
-
-// Whole body faces of a solid, ascending.
-std::vector<std::uint32_t> whole_faces(const Carving& carving, const Components& components, const CutSolid& solid) {
-  const CutBody& body = carving.body();
-  std::vector<std::uint32_t> whole;
-  std::vector<char> has_rest(body.shells().size(), 0);
-  bool any = false;
-  for (const std::uint32_t s : solid.shells) {
-    whole.insert(whole.end(), components.shells[s].whole.begin(), components.shells[s].whole.end());
-    for (const std::uint32_t r : components.shells[s].rest) has_rest[r] = any = true;
-  }
-  if (any) {
-    std::vector<char> other(body.mesh().triangle_count(), 0);
-    for (const CutShell& shell : components.shells)
-      for (const std::uint32_t f : shell.whole) other[f] = 1;
-    for (const auto* list : {&carving.cut, &carving.dropped})
-      for (const std::uint32_t f : *list) other[f] = 1;
-    for (std::uint32_t f = 0; f < other.size(); ++f)
-      if (!other[f] && has_rest[body.shell_of(f)]) whole.push_back(f);
-  }
-  std::sort(whole.begin(), whole.end());
-  return whole;
-}
-
-// Keeps the order of the vertices' numbers.
-void take_vertices(const Carving& carving, SurfaceMesh& mesh) {
-  std::vector<std::uint32_t> used;
-  used.reserve(3 * mesh.triangle_count());
-  for (const Triangle& t : mesh.triangles) used.insert(used.end(), t.begin(), t.end());
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  SparseMap place;
-  mesh.vertices.reserve(used.size());
-  for (std::uint32_t i = 0; i < used.size(); ++i)
-    place.insert(used[i], i), mesh.vertices.push_back(carving.position(used[i]));
-  for (Triangle& t : mesh.triangles) t = {place[t[0]], place[t[1]], place[t[2]]};
-}
-
-}  // namespace
-
-SurfaceMesh extract_solid(const Carving& carving, const Components& components, const CutSolid& solid) {
-  std::vector<std::uint32_t> parts;
-  for (const std::uint32_t s : solid.shells)
-    parts.insert(parts.end(), components.shells[s].parts.begin(), components.shells[s].parts.end());
-  std::sort(parts.begin(), parts.end());
-  const SurfaceMesh &body = carving.body().mesh(), &slab = carving.slab().mesh;
-  SurfaceMesh mesh;
-  match_channels(body, mesh);
-  mesh.triangles.reserve(solid.faces);
-  std::size_t next = 0;
-  const auto add_part = [&] {
-    const std::uint32_t i = parts[next++];
-    const NewFace& f = carving.faces[i];
-    const SurfaceMesh& from = f.of_slab ? slab : body;
-    mesh.triangles.push_back(f.vertices);
-    mesh.faces.push_back_from(from.faces, f.parent);
-    interpolate_corners(from, f.parent, carving.corners(carving.body_faces() + i), mesh);
-  };
-  for (const std::uint32_t f : whole_faces(carving, components, solid)) {
-    while (next < parts.size() && !carving.faces[parts[next]].of_slab && carving.faces[parts[next]].parent < f)
-      add_part();
-    append_face(body, f, body.triangles[f], mesh);
-  }
-  while (next < parts.size()) add_part();
-  take_vertices(carving, mesh);
-  return mesh;
 }
 
 }  // namespace sherd

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "kernels/core/fault.h"
 #include "kernels/core/predicates.h"
 #include "kernels/core/random.h"
 
@@ -108,6 +109,7 @@ Piercing failed(PierceStatus status, std::string reason) {
 }  // namespace
 
 Piercing pierce(const CutOperand& body, const CutOperand& slab) {
+  fault_point("cut.pierce");
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   body.bvh.overlapping_pairs(slab.bvh, pairs);
   Piercing result;

@@ -73,6 +73,24 @@ void append_face(const SurfaceMesh& from, std::uint32_t face, const Triangle& t,
   copy_corners(from, face, to);
 }
 
+void append_faces(const SurfaceMesh& from, std::uint32_t first, std::uint32_t last, SurfaceMesh& to) {
+  check_match(from, to);
+  const auto append = [](const auto& source, auto& target, std::size_t begin, std::size_t end) {
+    target.insert(target.end(), source.begin() + static_cast<std::ptrdiff_t>(begin),
+                  source.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  append(from.triangles, to.triangles, first, last);
+  append(from.faces.kind, to.faces.kind, first, last);
+  append(from.faces.crack, to.faces.crack, first, last);
+  append(from.faces.source, to.faces.source, first, last);
+  append(from.faces.side, to.faces.side, first, last);
+  append(from.faces.material, to.faces.material, first, last);
+  for (std::size_t c = 0; c < from.channels.size(); ++c) {
+    const std::size_t width = from.channels[c].width();
+    append(from.channels[c].value, to.channels[c].value, width * first, width * last);
+  }
+}
+
 void keep_faces(SurfaceMesh& mesh, const std::vector<bool>& keep) {
   SurfaceMesh kept;
   match_channels(mesh, kept);

@@ -22,6 +22,9 @@ void interpolate_corners(const SurfaceMesh& from, std::uint32_t face, const std:
 // Appends triangle `t` (vertices of `to`) with the columns and channel values of `face`.
 void append_face(const SurfaceMesh& from, std::uint32_t face, const Triangle& t, SurfaceMesh& to);
 
+// Faces first .. last - 1 with the vertex numbers they have in `from`.
+void append_faces(const SurfaceMesh& from, std::uint32_t first, std::uint32_t last, SurfaceMesh& to);
+
 // Keeps the faces with keep[t], in order; vertices stay.
 void keep_faces(SurfaceMesh& mesh, const std::vector<bool>& keep);
 
