@@ -7,6 +7,7 @@
 
 #include "engine/material/scalar_field.h"
 #include "engine/mesh/intersections.h"
+#include "kernels/core/fault.h"
 
 namespace sherd {
 namespace {
@@ -182,6 +183,7 @@ std::optional<SurfaceMesh> thicken(const CrackSheet& sheet, const SlabOptions& o
     reason = "the sheet is empty";
     return std::nullopt;
   }
+  fault_point("thicken");
   const Refined refined = refine(sheet);
   const std::vector<Real> thickness = thicknesses(refined, options, reason);
   if (!reason.empty()) return std::nullopt;

@@ -30,8 +30,11 @@ void jitter(const SurfaceMesh& slab, Real amplitude, std::uint64_t seed, Surface
 // One try with the slab as it is.
 class Attempt {
  public:
-  Attempt(const CutBody& body, const CutOperand& slab, Real edge_length)
-      : piercing_(pierce(body.operand(), slab)), carving_(body, slab, piercing_), edge_length_(edge_length) {}
+  Attempt(const CutBody& body, const CutOperand& slab, Real edge_length, bool complete)
+      : piercing_(pierce(body.operand(), slab)),
+        carving_(body, slab, piercing_),
+        edge_length_(edge_length),
+        complete_(complete) {}
 
   // Empty, or why another jitter has to be tried.
   std::string run() {
@@ -53,7 +56,12 @@ class Attempt {
     }
     fault_point("cut.components");
     components_ = find_components(carving_);
-    return components_.reason;
+    if (!components_.reason.empty()) return components_.reason;
+    // The design's V2: without handles no loop in the solid passes a complete sheet only once.
+    const bool handles = carving_.body().euler() < 2 * static_cast<std::int64_t>(carving_.body().shells().size());
+    if (complete_ && !handles && !piercing_.segments.empty() && components_.solids.size() < 2)
+      return "a complete crack leaves a body without handles in one piece";
+    return {};
   }
 
   void collect(const CutOptions& options, CutResult& result) const {
@@ -77,6 +85,7 @@ class Attempt {
   Piercing piercing_;
   Carving carving_;
   Real edge_length_;
+  bool complete_;
   Components components_;
   int cleanups_ = 0;
 };
@@ -111,7 +120,7 @@ CutResult cut(const CutBody& body, const SurfaceMesh& slab, const CutOptions& op
     if (result.jitters > 0 && count_self_intersections(moved, 1) > 0) {
       result.reason = "the slab intersects itself";
     } else {
-      Attempt attempt(body, operand, edge_length);
+      Attempt attempt(body, operand, edge_length, options.complete);
       result.reason = attempt.run();
       if (result.reason.empty()) {
         attempt.collect(options, result);

@@ -14,6 +14,7 @@ struct CutOptions {
   std::uint64_t seed = 1;           // of the jitter
   Real min_fragment_volume = 1e-5;  // of the body's volume; smaller pieces are dust
   DustRule dust = DustRule::kDrop;  // kKeep: dust becomes fragments like all others
+  bool complete = false;            // the slab's sheet ends outside the body: then a body without handles must separate
   bool slab_checked = false;        // the slab is known to be closed, manifold and embedded, as thicken() leaves it
 };
 

@@ -147,6 +147,32 @@ TEST_P(CutAttributes, WallsHaveTheirSideTheirMaterialAndTheirOwnTexture) {
   }
 }
 
+// Of edges between original faces that bend by more than 40 degrees, m.
+Real sharp_length(const SurfaceMesh& mesh) {
+  const std::vector<std::uint32_t> twin = build_twins(mesh);
+  Real sum = 0;
+  for (std::uint32_t e = 0; e < twin.size(); ++e) {
+    const std::uint32_t f = e / 3, g = twin[e] / 3;
+    if (e > twin[e] || mesh.faces.kind[f] == FaceKind::kCrack || mesh.faces.kind[g] == FaceKind::kCrack) continue;
+    const Real bend = dot(normalized(mesh.area_normal2(f)), normalized(mesh.area_normal2(g)));
+    const int k = static_cast<int>(e % 3);
+    if (bend < std::cos(40.0 / 180 * 3.14159265358979)) sum += distance(mesh.corner(f, k), mesh.corner(f, (k + 1) % 3));
+  }
+  return sum;
+}
+
+TEST(CutFeatures, SharpEdgesStayWhereTheyWereButForTheSlabsWidth) {
+  const SurfaceMesh body = make_box({1, 1, 1}, 0.25);
+  EXPECT_NEAR(sharp_length(body), 12, 1e-12);
+  SurfaceMesh slab = moved(make_box({0.02, 2.3, 2.9}, 5), [](const Vec3& p) { return p + Vec3{0.137, 0, 0}; });
+  slab.faces.kind.assign(slab.triangle_count(), FaceKind::kCrack);
+  const CutResult result = cut_of(body, slab);
+  expect_good(body, result);
+  Real sum = 0;
+  for (const SurfaceMesh& f : result.fragments) sum += sharp_length(f);
+  EXPECT_NEAR(sum, 12 - 4 * 0.02, 1e-12);
+}
+
 INSTANTIATE_TEST_SUITE_P(Bodies, CutAttributes, testing::Values(0, 1));
 
 TEST(CutChannels, AChannelOfTheWrongLengthIsRefused) {

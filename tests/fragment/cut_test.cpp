@@ -196,6 +196,35 @@ TEST(Cut, SmallPiecesAreDustAndTheirVolumeIsReported) {
   EXPECT_EQ(kept.dust_volume, 0);
 }
 
+// V2, and Euler's formula: each shell counts 2, each handle takes 2 off.
+TEST(Cut, EulersNumberFollowsTheCutAndACompleteSlabMustSeparateWhatHasNoHandle) {
+  SlabShape shape;
+  shape.centre = {1.01, 0.02, 0.03}, shape.normal = {0.05, 0.02, 1}, shape.half_u = shape.half_v = 0.6;
+  const SurfaceMesh torus = make_torus(1, 0.3, 0.2);
+  CutOptions options = options_for(torus);
+  options.complete = true;
+  const CutBody body(torus);
+  EXPECT_EQ(body.euler(), 0);
+  const CutResult opened = cut(body, make_slab(shape), options);  // through one arm: allowed, the torus has a handle
+  ASSERT_TRUE(opened.ok) << opened.reason;
+  EXPECT_FALSE(opened.separated);
+  EXPECT_EQ(opened.euler, 2);
+
+  const CutBody hollow(make_hollow_sphere(1, 0.6, 0.25));
+  EXPECT_EQ(hollow.euler(), 4);
+  shape.centre = {0.01, 0.02, 0.03}, shape.half_u = shape.half_v = 2;
+  const CutResult halves = cut(hollow, make_slab(shape), options);
+  ASSERT_TRUE(halves.ok) << halves.reason;
+  EXPECT_TRUE(halves.separated);
+  EXPECT_EQ(halves.euler, 4);
+  for (const SurfaceMesh& f : halves.fragments) EXPECT_EQ(CutBody(f).euler(), 2);
+
+  shape.wedge = true, shape.half_u = 0.6;  // ends inside: not what it was said to be
+  const CutResult notch = cut(CutBody(make_sphere(1, 0.3)), make_slab(shape), options);
+  EXPECT_FALSE(notch.ok);
+  EXPECT_NE(notch.reason.find("complete"), std::string::npos) << notch.reason;
+}
+
 TEST(Cut, ABodyWithinTheSlabIsRefused) {
   const CutResult result = cut_of(make_sphere(1, 0.5), make_box({4, 4, 4}, 2));
   EXPECT_FALSE(result.ok);
