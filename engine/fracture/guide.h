@@ -30,7 +30,7 @@ class Guide {
   Real edge_length() const { return edge_length_; }
 
  private:
-  Guide(GuideShape shape, const SurfaceMesh& mesh, Real edge_length);
+  Guide(GuideShape shape, const TriangleBvh& body, const SurfaceMesh& mesh, Real edge_length);
   Real edge_length_;
   SurfaceMesh surface_;
   TriangleBvh bvh_;

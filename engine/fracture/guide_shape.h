@@ -2,8 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "engine/material/guide_spec.h"
-#include "engine/mesh/bvh.h"
+#include "engine/fracture/guide.h"
 
 namespace sherd {
 
@@ -23,5 +22,10 @@ struct GuideShape {
   Vec3 reference;       // where it should start
 };
 GuideShape guide_shape(const GuideSpec& spec, const TriangleBvh& body, Real edge_length);
+
+// One seed for each curve in which the guide (whose triangles are `surface`) meets the body, in order of distance from
+// `reference`; their stress has no value yet.
+std::vector<CrackSeed> guide_seeds(const Guide& guide, const TriangleBvh& surface, const TriangleBvh& body,
+                                   const SurfaceMesh& mesh, const Vec3& reference);
 
 }  // namespace sherd
