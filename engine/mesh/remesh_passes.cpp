@@ -74,7 +74,8 @@ void Remesher::run() {
     }
     repair(20 * kDegree);
   }
-  if (options_.keep_volume && options_.iterations > 0) fit_heights(), fit_volume();
+  if (options_.keep_volume && options_.iterations > 0) fit_heights();
+  if (options_.keep_volume) fit_volume();
 }
 
 std::optional<TriangleBvh::Closest> Remesher::project(const Vec3& p, const Vec3& n, FaceKind kind,
