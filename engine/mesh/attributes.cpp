@@ -51,20 +51,22 @@ std::array<Real, 3> corner_weights(const SurfaceMesh& mesh, std::uint32_t face, 
   return {1 - wb - wc, wb, wc};
 }
 
-void interpolate_corners(const SurfaceMesh& from, std::uint32_t face, const std::array<Vec3, 3>& at, SurfaceMesh& to) {
+void append_corner(const SurfaceMesh& from, std::uint32_t face, const Vec3& p, SurfaceMesh& to) {
   check_match(from, to);
   if (from.channels.empty()) return;
-  for (const Vec3& p : at) {
-    const std::array<Real, 3> w = corner_weights(from, face, p);
-    for (std::size_t c = 0; c < from.channels.size(); ++c) {
-      const auto n = static_cast<std::size_t>(from.channels[c].components);
-      const float* v = from.channels[c].value.data() + 3 * n * face;
-      for (std::size_t i = 0; i < n; ++i)
-        to.channels[c].value.push_back(static_cast<float>(w[0] * static_cast<Real>(v[i]) +
-                                                          w[1] * static_cast<Real>(v[n + i]) +
-                                                          w[2] * static_cast<Real>(v[2 * n + i])));
-    }
+  const std::array<Real, 3> w = corner_weights(from, face, p);
+  for (std::size_t c = 0; c < from.channels.size(); ++c) {
+    const auto n = static_cast<std::size_t>(from.channels[c].components);
+    const float* v = from.channels[c].value.data() + 3 * n * face;
+    for (std::size_t i = 0; i < n; ++i)
+      to.channels[c].value.push_back(static_cast<float>(w[0] * static_cast<Real>(v[i]) +
+                                                        w[1] * static_cast<Real>(v[n + i]) +
+                                                        w[2] * static_cast<Real>(v[2 * n + i])));
   }
+}
+
+void interpolate_corners(const SurfaceMesh& from, std::uint32_t face, const std::array<Vec3, 3>& at, SurfaceMesh& to) {
+  for (const Vec3& p : at) append_corner(from, face, p, to);
 }
 
 void append_face(const SurfaceMesh& from, std::uint32_t face, const Triangle& t, SurfaceMesh& to) {

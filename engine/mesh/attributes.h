@@ -19,6 +19,9 @@ void copy_corners(const SurfaceMesh& from, std::uint32_t face, SurfaceMesh& to);
 // outside. A face without area gives the values of its nearest corner.
 void interpolate_corners(const SurfaceMesh& from, std::uint32_t face, const std::array<Vec3, 3>& at, SurfaceMesh& to);
 
+// The same for one corner at p; three of these make a face.
+void append_corner(const SurfaceMesh& from, std::uint32_t face, const Vec3& p, SurfaceMesh& to);
+
 // Appends triangle `t` (vertices of `to`) with the columns and channel values of `face`.
 void append_face(const SurfaceMesh& from, std::uint32_t face, const Triangle& t, SurfaceMesh& to);
 

@@ -113,14 +113,16 @@ bool parse_number(std::string_view token, long long& value) {
   return parse_any(token, value);
 }
 
-void add_polygon(const std::vector<std::uint32_t>& polygon, SurfaceMesh& mesh) {
-  if (polygon.size() == 3) {
-    mesh.add_triangle(polygon[0], polygon[1], polygon[2]);
-    return;
-  }
+std::vector<Triangle> triangulate_polygon(const std::vector<std::uint32_t>& polygon, const SurfaceMesh& mesh) {
+  if (polygon.size() == 3) return {{0, 1, 2}};
   std::vector<Vec3> loop;
   for (const std::uint32_t v : polygon) loop.push_back(mesh.vertices[v]);
-  for (const Triangle& t : triangulate_loop(loop)) mesh.add_triangle(polygon[t[0]], polygon[t[1]], polygon[t[2]]);
+  return triangulate_loop(loop);
+}
+
+void add_polygon(const std::vector<std::uint32_t>& polygon, SurfaceMesh& mesh) {
+  for (const Triangle& t : triangulate_polygon(polygon, mesh))
+    mesh.add_triangle(polygon[t[0]], polygon[t[1]], polygon[t[2]]);
 }
 
 SurfaceMesh load_mesh(const std::string& path, const LoadOptions& options, LoadLog& log) {

@@ -25,9 +25,11 @@ struct LoadLog {
 // borders gets vertices of equal coordinates joined, and border vertices closer than 1e-7 of the bounding box's
 // diagonal joined where that closes borders. Triangles with a repeated vertex and copies of a triangle are dropped.
 // Triangles without area between three vertices stay: dropping them would tear the surface (repair_mesh removes them).
-// faces.source is the number of the file's triangle, counted after triangulation. InputError (file, place, remedy):
-// missing, a folder, empty, unreadable, unknown ending, not what the ending says, truncated, an index out of range, a
-// coordinate that is no finite number, no triangles.
+// Texture coordinates become the corner channel "uv" (OBJ vt; PLY s and t, u and v or face lists `texcoord`; glTF,
+// 3DS), other floating-point properties of a PLY's vertices or corners channels of their names; joined vertices keep
+// their corners' own values. faces.source is the number of the file's triangle, counted after triangulation. InputError
+// (file, place, remedy): missing, a folder, empty, unreadable, unknown ending, not what the ending says, truncated, an
+// index out of range, a coordinate that is no finite number, no triangles.
 SurfaceMesh load_mesh(const std::string& path, const LoadOptions& options, LoadLog& log);
 
 }  // namespace sherd

@@ -3,6 +3,7 @@
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
+#include <cmath>
 
 #include "engine/mesh/load_raw.h"
 #include "kernels/core/error.h"
@@ -15,6 +16,8 @@ struct Collector {
   const std::string& path;
   SurfaceMesh mesh;
   std::size_t other_faces = 0;
+  std::vector<float> uv;  // of each corner, (0, 0) for parts without texture coordinates
+  bool textured = false;
 
   void add(const aiNode& node, const aiMatrix4x4& parent, int depth) {
     if (depth > 1000)
@@ -49,7 +52,16 @@ struct Collector {
         throw InputError(fmt::format("{}: face {} of mesh '{}' has a vertex index out of range; export the file again",
                                      path, i, part.mName.C_Str()));
       mesh.add_triangle(offset + a, offset + b, offset + c);
+      for (const unsigned v : {a, b, c}) add_texture(part, v);
     }
+  }
+
+  void add_texture(const aiMesh& part, unsigned v) {
+    const bool has = part.HasTextureCoords(0);
+    const aiVector3D at = has ? part.mTextureCoords[0][v] : aiVector3D();
+    const bool finite = std::isfinite(at.x) && std::isfinite(at.y);
+    uv.push_back(finite ? at.x : 0), uv.push_back(finite ? at.y : 0);
+    textured = textured || has;
   }
 };
 
@@ -71,9 +83,10 @@ SurfaceMesh read_assimp(const std::string& path, std::vector<std::string>& messa
         fmt::format("{}: cannot be read ({}); export the file again", path, one_line(importer.GetErrorString())));
   if ((scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0)
     throw InputError(fmt::format("{}: the file is incomplete; export it again", path));
-  Collector collector{*scene, path, {}, 0};
+  Collector collector{*scene, path, {}, 0, {}, false};
   collector.add(*scene->mRootNode, aiMatrix4x4(), 0);
   if (collector.other_faces > 0) messages.push_back(fmt::format("left out {} points and lines", collector.other_faces));
+  if (collector.textured) collector.mesh.channels = {{"uv", 2, std::move(collector.uv)}};
   return std::move(collector.mesh);
 }
 

@@ -1,5 +1,7 @@
-// PLY, ascii and binary: element vertex (x, y, z) and element face (vertex_indices or vertex_index); the rest is
-// skipped.
+// PLY, ascii and binary: element vertex (x, y, z) and element face (vertex_indices or vertex_index). Floating-point
+// properties of vertices become corner channels of their name, texture coordinates (s and t, u and v, or texture_u and
+// texture_v) the channel "uv"; normals do not. Lists of floats of faces with as many values for each corner become
+// channels too, "texcoord" the channel "uv". The rest is skipped.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -12,6 +14,7 @@ namespace sherd {
 namespace {
 
 enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
+constexpr std::size_t kMostComponents = 16;  // of a corner channel
 constexpr std::size_t kTypeSize[] = {1, 1, 2, 2, 4, 4, 4, 8};
 
 std::optional<Type> type_of(std::string_view name) {
@@ -74,8 +77,11 @@ class PlyReader {
       for (const std::uint32_t v : polygons_[i])
         if (v >= mesh_.vertex_count())
           fail(fmt::format("face {} (counted from 0) uses vertex {} of {}", i, v, mesh_.vertex_count()));
-      add_polygon(polygons_[i], mesh_);
+      if (i == 0)
+        for (std::size_t c = 0; c < of_corners_.size(); ++c) of_corners_[c].components = components_of(c);
+      add_face(i);
     }
+    collect_channels();
     return std::move(mesh_);
   }
 
@@ -199,15 +205,98 @@ class PlyReader {
     for (std::size_t i = 0; i < e.count; ++i)
       for (const Property& p : e.properties) skip(p, e, i);
   }
+  float attribute(const Property& p, const Element& e, std::size_t i) {
+    const auto x = static_cast<float>(value(p.type, e, i));
+    if (!std::isfinite(x)) fail(fmt::format("'{}' of entry {} of '{}' is not a finite number", p.name, i, e.name));
+    return x;
+  }
+
+  // Components of a list of floats with as many for each corner of every face; 0 when it is something else.
+  int components_of(std::size_t list) const {
+    int components = 0;
+    if (corner_values_[list].size() != polygons_.size()) return 0;
+    for (std::size_t i = 0; i < polygons_.size(); ++i) {
+      const std::size_t n = corner_values_[list][i].size(), each = n / polygons_[i].size();
+      if (n == 0 || n % polygons_[i].size() != 0 || each > kMostComponents) return 0;
+      if (components == 0) components = static_cast<int>(each);
+      if (static_cast<int>(each) != components) return 0;
+    }
+    return components;
+  }
+
+  // The polygon's triangles, with what lists of the face say at their corners.
+  void add_face(std::size_t i) {
+    for (const Triangle& t : triangulate_polygon(polygons_[i], mesh_)) {
+      mesh_.add_triangle(polygons_[i][t[0]], polygons_[i][t[1]], polygons_[i][t[2]]);
+      for (const std::uint32_t corner : t)
+        for (std::size_t c = 0; c < of_corners_.size(); ++c) {
+          const auto n = static_cast<std::size_t>(of_corners_[c].components);
+          if (n == 0) continue;
+          const auto first = corner_values_[c][i].begin() + static_cast<std::ptrdiff_t>(n * corner);
+          of_corners_[c].value.insert(of_corners_[c].value.end(), first, first + static_cast<std::ptrdiff_t>(n));
+        }
+    }
+  }
+
+  void collect_channels() {
+    for (CornerChannel& c : of_corners_)
+      if (c.components > 0) mesh_.channels.push_back(std::move(c));
+    // A file with two elements 'vertex' has values for some vertices only.
+    std::erase_if(of_vertices_, [&](const CornerChannel& c) { return c.value.size() != mesh_.vertex_count(); });
+    const auto known = [&](const std::string& name) {
+      return std::any_of(mesh_.channels.begin(), mesh_.channels.end(),
+                         [&](const CornerChannel& c) { return c.name == name; });
+    };
+    const auto find = [&](const char* name) {
+      return std::find_if(of_vertices_.begin(), of_vertices_.end(),
+                          [&](const CornerChannel& c) { return c.name == name; });
+    };
+    for (const auto& [first, second] :
+         {std::pair{"s", "t"}, std::pair{"u", "v"}, std::pair{"texture_u", "texture_v"}}) {
+      const auto u = find(first), v = find(second);
+      if (u == of_vertices_.end() || v == of_vertices_.end()) continue;
+      CornerChannel both{"uv", 2, {}};
+      for (std::size_t i = 0; i < u->value.size(); ++i)
+        both.value.push_back(u->value[i]), both.value.push_back(v->value[i]);
+      of_vertices_.erase(std::max(u, v)), of_vertices_.erase(std::min(u, v));
+      if (!known("uv")) add_channel(both);
+    }
+    for (const CornerChannel& c : of_vertices_)
+      if (!known(c.name)) add_channel(c);
+  }
+  // From values at vertices.
+  void add_channel(const CornerChannel& of_vertices) {
+    const auto n = static_cast<std::ptrdiff_t>(of_vertices.components);
+    CornerChannel channel{of_vertices.name, of_vertices.components, {}};
+    for (const Triangle& t : mesh_.triangles)
+      for (const std::uint32_t v : t) {
+        const auto first = of_vertices.value.begin() + n * static_cast<std::ptrdiff_t>(v);
+        channel.value.insert(channel.value.end(), first, first + n);
+      }
+    mesh_.channels.push_back(std::move(channel));
+  }
+
   void read_vertices(const Element& e) {
     for (const char* axis : {"x", "y", "z"})
       if (std::none_of(e.properties.begin(), e.properties.end(),
                        [&](const Property& p) { return p.name == axis && !p.list; }))
         fail(fmt::format("its vertices have no property '{}'", axis));
     mesh_.vertices.reserve(e.count);
+    std::vector<int> slot;
+    for (const Property& p : e.properties) {
+      const bool wanted = !p.list && p.type >= Type::kFloat && p.name != "nx" && p.name != "ny" && p.name != "nz" &&
+                          p.name != "x" && p.name != "y" && p.name != "z";
+      slot.push_back(wanted ? static_cast<int>(of_vertices_.size()) : -1);
+      if (wanted) of_vertices_.push_back({p.name, 1, {}});
+    }
     for (std::size_t i = 0; i < e.count; ++i) {
       Vec3 point;
-      for (const Property& p : e.properties) {
+      for (std::size_t k = 0; k < slot.size(); ++k) {
+        const Property& p = e.properties[k];
+        if (slot[k] >= 0) {
+          of_vertices_[static_cast<std::size_t>(slot[k])].value.push_back(attribute(p, e, i));
+          continue;
+        }
         const int axis = p.list || p.name.size() != 1 ? -1 : p.name[0] - 'x';
         if (axis < 0 || axis > 2) {
           skip(p, e, i);
@@ -227,8 +316,22 @@ class PlyReader {
     if (std::none_of(e.properties.begin(), e.properties.end(), is_corner_list))
       fail("its faces have no list 'vertex_indices'");
     polygons_.reserve(e.count);
+    std::vector<int> slot;
+    for (const Property& p : e.properties) {
+      const bool wanted = p.list && p.type >= Type::kFloat;
+      slot.push_back(wanted ? static_cast<int>(of_corners_.size()) : -1);
+      if (wanted) of_corners_.push_back({p.name == "texcoord" ? "uv" : p.name, 0, {}});
+    }
+    corner_values_.resize(of_corners_.size());
     for (std::size_t i = 0; i < e.count; ++i)
-      for (const Property& p : e.properties) {
+      for (std::size_t s = 0; s < slot.size(); ++s) {
+        const Property& p = e.properties[s];
+        if (slot[s] >= 0) {
+          std::vector<float> values(list_length(p, e, i));
+          for (float& x : values) x = attribute(p, e, i);
+          corner_values_[static_cast<std::size_t>(slot[s])].push_back(std::move(values));
+          continue;
+        }
         if (!is_corner_list(p)) {
           skip(p, e, i);
           continue;
@@ -253,6 +356,8 @@ class PlyReader {
   std::vector<Element> elements_;
   SurfaceMesh mesh_;
   std::vector<std::vector<std::uint32_t>> polygons_;
+  std::vector<CornerChannel> of_vertices_, of_corners_;         // floating-point properties and lists
+  std::vector<std::vector<std::vector<float>>> corner_values_;  // per list and face
 };
 
 }  // namespace

@@ -25,6 +25,8 @@ bool parse_number(std::string_view token, long long& value);
 // The next run of non-blank characters at or after `position`, which moves past it; empty at the end.
 std::string_view next_token(std::string_view text, std::size_t& position);
 
+// The polygon's triangles, as numbers of its own corners.
+std::vector<Triangle> triangulate_polygon(const std::vector<std::uint32_t>& polygon, const SurfaceMesh& mesh);
 // Adds the polygon's triangles.
 void add_polygon(const std::vector<std::uint32_t>& polygon, SurfaceMesh& mesh);
 

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <queue>
 
+#include "engine/mesh/attributes.h"
 #include "engine/mesh/intersections.h"
 #include "engine/mesh/remesh_work.h"
 #include "kernels/core/error.h"
@@ -30,16 +31,22 @@ void check(const SurfaceMesh& in, const RemeshOptions& o) {
       throw InputError(fmt::format("remesh: a target length is {}; give positive lengths in metres", size));
 }
 
-// Each face takes `source` from the input face it lies on.
-void inherit_sources(const SurfaceMesh& in, const Remesher& work, SurfaceMesh& out, Real h, RemeshReport& report) {
+// Each face takes `source`, `side` and corner values from the input faces it lies on.
+void inherit(const SurfaceMesh& in, const Remesher& work, const std::vector<std::uint32_t>& faces_of, SurfaceMesh& out,
+             Real h, RemeshReport& report) {
+  const ChannelSampler sampler(in, work.input());
+  match_channels(in, out);
+  for (CornerChannel& c : out.channels) c.value.clear();
   Real deviation2 = 0, face_deviation2 = 0;
   for (std::size_t t = 0; t < out.triangle_count(); ++t) {
     face_deviation2 = std::max(face_deviation2, work.input().closest(out.centroid(t)).distance2);
     const Vec3 n = normalized(out.area_normal2(t));
-    auto found = work.project(out.centroid(t), n, out.faces.kind[t], out.faces.crack[t]);
-    if (!found) found = work.project(out.centroid(t), {}, out.faces.kind[t], out.faces.crack[t]);
-    if (!found) continue;
-    out.faces.source[t] = in.faces.source[found->face];
+    const std::uint32_t region = work.mesh().region[faces_of[t]];
+    auto found = work.project(out.centroid(t), n, region);
+    if (!found) found = work.project(out.centroid(t), {}, region);
+    const std::uint32_t face = found ? found->face : work.input().closest(out.centroid(t)).face;
+    if (found) out.faces.source[t] = in.faces.source[face], out.faces.side[t] = in.faces.side[face];
+    sampler.append(face, {out.corner(t, 0), out.corner(t, 1), out.corner(t, 2)}, out);
   }
   for (std::size_t v = 0; v < out.vertex_count(); ++v)
     deviation2 = std::max(deviation2, work.input().closest(out.vertices[v]).distance2);
@@ -133,8 +140,9 @@ RemeshReport remesh(const SurfaceMesh& in, const RemeshOptions& options, Surface
   if (!mesh.assign(source, why)) return refuse(why);
   Remesher work(source, std::move(mesh), options, report);
   work.run();
-  SurfaceMesh result = work.mesh().extract();
-  inherit_sources(source, work, result, options.edge_length, report);
+  std::vector<std::uint32_t> faces_of;
+  SurfaceMesh result = work.mesh().extract(&faces_of);
+  inherit(source, work, faces_of, result, options.edge_length, report);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> examples;
   if (count_self_intersections(result, 1, &examples) > 0) {
     const Vec3 at = result.centroid(examples[0].first);

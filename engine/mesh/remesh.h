@@ -20,6 +20,8 @@ struct RemeshOptions {
   // Vertices leave the input surface by a part of the facets' own error, so that new facets cut no volume off curved
   // places, and walls and curved places give what features have cost. Without, vertices lie on the input surface.
   bool keep_volume = false;
+  // Borders of texture charts (jumps of corner channels) are feature lines, but for charts smaller than 8 h^2.
+  bool keep_seams = true;
   // Empty, or the target at each vertex of the input, metres, positive (linear in between; engine/mesh/sizing.h makes
   // it). `edge_length` is then what features are judged by, and the unit of the report's deviations.
   std::vector<Real> size = {};
@@ -46,9 +48,9 @@ struct RemeshReport {
 // `in` is closed and 2-manifold (else the mesh is refused), without self-intersections (each operation is tested
 // exactly, so none arise; with some in the input the result may be refused). Feature lines: creases, and edges between
 // faces of different kind or crack id. Line ends, junctions, sharp turns stay where they are, other line vertices move
-// along the line only. Every output face has the kind and crack id of the input region it lies in, and the `source` of
-// the closest input face there. Vertices are renumbered (locked ones keep their order). Deterministic. Throws
-// InputError for options out of range.
+// along the line only. Every output face has the kind, crack id and material of the input region it lies in, and
+// `source`, `side` and corner values of the closest input faces there. Vertices are renumbered (locked ones keep their
+// order). Deterministic. Throws InputError for options out of range.
 RemeshReport remesh(const SurfaceMesh& in, const RemeshOptions& options, SurfaceMesh& out);
 
 // Smallest angle of a triangle, radians; 0 for a degenerate one.

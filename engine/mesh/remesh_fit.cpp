@@ -23,7 +23,7 @@ Real Remesher::height_over_input(std::uint32_t t) const {
   Real sum = 0;
   int count = 0;
   for (const Vec3& p : {centroid, 0.5 * (centroid + c[0]), 0.5 * (centroid + c[1]), 0.5 * (centroid + c[2])}) {
-    const auto found = project(p, n, mesh_.faces.kind[t], mesh_.faces.crack[t]);
+    const auto found = project(p, n, mesh_.region[t]);
     if (found) sum += dot(p - found->point, n), ++count;
   }
   return count == 0 ? 0 : sum / count;

@@ -56,7 +56,7 @@ class LineFinder {
       if (borrow[t] != kNone) normal[t] = normal[borrow[t]];
     for (std::uint32_t h = 0; h < feature_.size(); ++h) {
       const std::uint32_t f = h / 3, g = mesh_.twin[h] / 3;
-      if (mesh_.faces.kind[f] != mesh_.faces.kind[g] || mesh_.faces.crack[f] != mesh_.faces.crack[g])
+      if (mesh_.region[f] != mesh_.region[g])
         feature_[h] = kBoundary;
       else if (dot(normal[f], normal[g]) < cos_angle_)
         feature_[h] = kCrease;

@@ -1,6 +1,6 @@
-// Feature lines of the input: polylines of edges that are creases or that part faces of different kind or crack id,
-// between fixed vertices (ends, junctions, sharp turns, locked vertices). Line vertices of the working mesh live at an
-// arc length.
+// Feature lines of the input: polylines of edges that are creases or that part faces of different region (kind,
+// crack id, texture chart), between fixed vertices (ends, junctions, sharp turns, locked vertices). Line vertices of
+// the working mesh live at an arc length.
 #pragma once
 #include <vector>
 

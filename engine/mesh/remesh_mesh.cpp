@@ -15,6 +15,7 @@ bool EditMesh::assign(const SurfaceMesh& mesh, const char*& reason) {
   triangle = mesh.triangles;
   faces = mesh.faces;
   faces.resize(triangle.size());
+  region.assign(triangle.size(), 0);
   twin = build_twins(mesh);
   line.assign(twin.size(), kNone);
   out.assign(n, kNone);
@@ -29,7 +30,7 @@ bool EditMesh::assign(const SurfaceMesh& mesh, const char*& reason) {
   return true;
 }
 
-SurfaceMesh EditMesh::extract() const {
+SurfaceMesh EditMesh::extract(std::vector<std::uint32_t>* faces_of) const {
   SurfaceMesh mesh;
   std::vector<std::uint32_t> index(position.size(), kNone);
   for (std::size_t v = 0; v < position.size(); ++v)
@@ -41,6 +42,7 @@ SurfaceMesh EditMesh::extract() const {
     if (alive(t)) {
       mesh.triangles.push_back({index[triangle[t][0]], index[triangle[t][1]], index[triangle[t][2]]});
       mesh.faces.push_back_from(faces, t);
+      if (faces_of != nullptr) faces_of->push_back(t);
     }
   return mesh;
 }
@@ -72,6 +74,8 @@ std::uint32_t EditMesh::split(std::uint32_t h, const Vec3& p) {
     return two;
   }();
   faces.push_back_from(old, 0), faces.push_back_from(old, 1);
+  const std::uint32_t here = region[h / 3], there = region[t / 3];
+  region.push_back(here), region.push_back(there);
   const std::uint32_t on = line[h], bc = twin[hn], ad = twin[tn], bc_line = line[hn], ad_line = line[tn];
   twin.resize(twin.size() + 6);
   line.resize(line.size() + 6, kNone);

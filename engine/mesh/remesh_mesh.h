@@ -14,10 +14,12 @@ struct EditMesh {
   std::vector<std::uint32_t> line;  // per half-edge: feature line it lies on, kNone elsewhere; equal on both twins
   std::vector<std::uint32_t> out;   // per vertex: some half-edge leaving it, kNone when deleted
   FaceAttributes faces;
+  std::vector<std::uint32_t> region;  // per triangle: feature lines run between regions
 
   // False when the mesh is not closed, 2-manifold and consistently oriented; the reason is then set.
   bool assign(const SurfaceMesh& mesh, const char*& reason);
-  SurfaceMesh extract() const;
+  // Without channels. `faces_of`, when given, receives the working mesh's triangle of each.
+  SurfaceMesh extract(std::vector<std::uint32_t>* faces_of = nullptr) const;
 
   static std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
   static std::uint32_t prev(std::uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }

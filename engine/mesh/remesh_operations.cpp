@@ -81,7 +81,7 @@ bool Remesher::normal_agrees(const NewFace& after, const std::array<Vec3, 3>& be
   // A sliver, or (in repair) a face thinner than anything the target length can show: ask the input surface.
   const Vec3 centre = (after.corner[0] + after.corner[1] + after.corner[2]) / 3.0;
   const std::uint32_t f = after.face;
-  const auto found = project(centre, {0, 0, 0}, mesh_.faces.kind[f], mesh_.faces.crack[f]);
+  const auto found = project(centre, {0, 0, 0}, mesh_.region[f]);
   if (!found) return false;
   const Vec3 m = area_normal(input_bvh_.corners(found->face));
   return dot(n, m) > 0.5 * ln * norm(m);

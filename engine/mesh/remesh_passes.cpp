@@ -7,7 +7,8 @@ namespace sherd {
 namespace {
 
 constexpr Real kDegree = std::numbers::pi / 180;
-constexpr Real kMerge = 0.02;  // what is merged from the start
+constexpr Real kMerge = 0.02;    // what is merged from the start
+constexpr Real kLeastChart = 8;  // of the target length squared: smaller charts' borders are no lines
 
 struct EdgeKey {
   Real length;            // over its target, times the mesh's
@@ -42,9 +43,11 @@ Remesher::Remesher(const SurfaceMesh& in, EditMesh mesh, const RemeshOptions& op
       locked_(options.locked),
       input_(in),
       input_bvh_(in),
+      input_region_(label_regions(in, options.keep_seams, kLeastChart * options.edge_length * options.edge_length)),
       size_(options.size),
       h_(options.edge_length),
       merge_(std::min(options.merge, kMerge)) {
+  mesh_.region = input_region_;
   features_ = find_feature_lines(mesh_, options.feature_angle, h_, options.locked);
 }
 
@@ -78,10 +81,9 @@ void Remesher::run() {
   if (options_.keep_volume) fit_volume();
 }
 
-std::optional<TriangleBvh::Closest> Remesher::project(const Vec3& p, const Vec3& n, FaceKind kind,
-                                                      std::int32_t crack) const {
+std::optional<TriangleBvh::Closest> Remesher::project(const Vec3& p, const Vec3& n, std::uint32_t region) const {
   const auto fits = [&](std::uint32_t f) {
-    if (input_.faces.kind[f] != kind || input_.faces.crack[f] != crack) return false;
+    if (input_region_[f] != region) return false;
     return n == Vec3{} || dot(input_.area_normal2(f), n) > 0.2 * norm(input_.area_normal2(f));
   };
   TriangleBvh::Closest best = input_bvh_.closest(p);
@@ -167,7 +169,7 @@ void Remesher::split_free_edge(std::uint32_t h) {
   };
   const std::uint32_t f = h / 3;
   const Vec3 n = normalized(normal(f) + normal(mesh_.twin[h] / 3));
-  const auto found = project(middle, n, mesh_.faces.kind[f], mesh_.faces.crack[f]);
+  const auto found = project(middle, n, mesh_.region[f]);
   const Real h2 = edge_target(h) * edge_target(h);
   if (!found || found->distance2 > 0.25 * h2) return;
   // A midpoint far off the surface that cannot be lifted stays a long edge: fewer vertices rather than wrong ones.
@@ -245,7 +247,7 @@ bool Remesher::smooth_free_vertex(std::uint32_t v) {
   const std::uint32_t f = mesh_.out[v] / 3;
   const Real h2 = target(v) * target(v);
   for (const Real step : {1.0, 0.4}) {
-    const auto found = project(x + d * step, n, mesh_.faces.kind[f], mesh_.faces.crack[f]);
+    const auto found = project(x + d * step, n, mesh_.region[f]);
     if (!found || found->distance2 > 0.25 * h2) continue;
     if (distance2(found->point, x) < 1e-6 * h2) return false;
     if (try_move(v, found->point)) return true;

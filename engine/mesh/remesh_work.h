@@ -7,6 +7,7 @@
 #include "engine/mesh/remesh.h"
 #include "engine/mesh/remesh_lines.h"
 #include "engine/mesh/remesh_tree.h"
+#include "engine/mesh/resample.h"
 
 namespace sherd {
 
@@ -17,8 +18,8 @@ class Remesher {
   void run();
   const EditMesh& mesh() const { return mesh_; }
   const TriangleBvh& input() const { return input_bvh_; }
-  // Closest point of the input among faces of the same kind and crack id that face the same way as n (n = 0: any way).
-  std::optional<TriangleBvh::Closest> project(const Vec3& p, const Vec3& n, FaceKind kind, std::int32_t crack) const;
+  // Closest point of the input among faces of the same region that face the same way as n (n = 0: any way).
+  std::optional<TriangleBvh::Closest> project(const Vec3& p, const Vec3& n, std::uint32_t region) const;
 
  private:
   // A face after an operation, in order around the vertex they share (corner 0).
@@ -85,6 +86,7 @@ class Remesher {
   const std::vector<std::uint8_t>& locked_;
   const SurfaceMesh& input_;
   TriangleBvh input_bvh_;
+  std::vector<std::uint32_t> input_region_;
   FeatureLines features_;
   FaceTree tree_;
   std::vector<Real> size_;  // per vertex of the working mesh; empty when h_ holds everywhere

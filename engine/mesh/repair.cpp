@@ -2,6 +2,7 @@
 
 #include "engine/mesh/intersections.h"
 #include "engine/mesh/repair_steps.h"
+#include "engine/mesh/resample.h"
 #include "engine/mesh/validate.h"
 #include "kernels/core/error.h"
 
@@ -32,8 +33,10 @@ class Repair {
     tidy();
     refuse_nonmanifold_edges();
     make_oriented();
-    close_holes();
-    remove_thin_triangles();
+    const SurfaceMesh before = mesh_.channels.empty() ? SurfaceMesh{} : mesh_;
+    const bool filled = close_holes(), thinned = remove_thin_triangles();
+    // New triangles and those whose corners moved take the values of the surface they lie on.
+    if (!before.channels.empty() && (filled || thinned)) resample_channels(before, mesh_);
     turn();
     if (options_.check_self_intersections) separate();
     confirm();
@@ -88,7 +91,7 @@ class Repair {
     if (o.flipped > 0)
       say(fmt::format("turned {} triangle{} to agree with their neighbours", o.flipped, plural(o.flipped)));
   }
-  void close_holes() {
+  bool close_holes() {
     const Real diagonal = bounding_box(mesh_).diagonal();
     const Real limit = options_.max_hole_diameter > 0 ? options_.max_hole_diameter : 0.05 * diagonal;
     const HoleFilling h = fill_holes(mesh_, limit);
@@ -101,12 +104,14 @@ class Repair {
     if (h.filled > 0)
       say(fmt::format("closed {} hole{} (the largest {:.4g} m wide) with {} triangles", h.filled, plural(h.filled),
                       h.largest_filled, h.triangles));
+    return h.filled > 0;
   }
-  void remove_thin_triangles() {
+  bool remove_thin_triangles() {
     const NeedleRemoval n = remove_needles(mesh_);
     if (n.flips + n.collapses > 0)
       say(fmt::format("removed thin triangles by {} edge flip{} and {} edge collapse{}", n.flips, plural(n.flips),
                       n.collapses, plural(n.collapses)));
+    return n.flips + n.collapses > 0;
   }
   void turn() {
     if (const std::size_t n = turn_shells(mesh_); n > 0)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <queue>
 
+#include "engine/mesh/attributes.h"
 #include "engine/mesh/remesh_mesh.h"
 #include "kernels/core/error.h"
 
@@ -75,6 +76,8 @@ Real finest_target(const SurfaceMesh& mesh, const SizingOptions& options) {
 SurfaceMesh with_edges_halved(const SurfaceMesh& mesh, Real longest) {
   SurfaceMesh source = mesh;
   source.faces.resize(mesh.triangle_count());
+  // Children stay inside their parent, whose number they inherit.
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) source.faces.source[t] = static_cast<std::int32_t>(t);
   EditMesh edit;
   const char* reason = nullptr;
   if (!edit.assign(source, reason)) return mesh;
@@ -98,7 +101,15 @@ SurfaceMesh with_edges_halved(const SurfaceMesh& mesh, Real longest) {
     // The outline's edges too: splitting gives two of them new numbers.
     edit.for_out(m, [&](std::uint32_t x) { add(x), add(EditMesh::next(x)); });
   }
-  return edit.extract();
+  SurfaceMesh out = edit.extract();
+  match_channels(mesh, out);
+  for (CornerChannel& c : out.channels) c.value.clear();
+  for (std::size_t t = 0; t < out.triangle_count(); ++t) {
+    const auto parent = static_cast<std::uint32_t>(out.faces.source[t]);
+    out.faces.source[t] = mesh.faces.source.empty() ? -1 : mesh.faces.source[parent];
+    interpolate_corners(mesh, parent, {out.corner(t, 0), out.corner(t, 1), out.corner(t, 2)}, out);
+  }
+  return out;
 }
 
 RemeshReport remesh_graded(const SurfaceMesh& in, const SizingOptions& options, SurfaceMesh& out) {

@@ -11,10 +11,12 @@ namespace sherd {
 enum class PlyPrecision { kFloat, kDouble };
 
 // Binary little-endian PLY. When any face is a crack face, each face also has `uchar kind` (0 original, 1 crack),
-// `int crack` and `int source` (FaceAttributes).
+// `int crack`, `int source`, `char side` and `ushort material` (FaceAttributes). Corner channels are
+// lists of floats of each face, the values of its corners one after the other: "uv" as `texcoord`, others under their
+// own names. load_mesh() reads the channels back.
 void write_ply(const SurfaceMesh& mesh, const std::string& path, PlyPrecision precision = PlyPrecision::kFloat);
-// Wavefront OBJ with 17 significant digits (doubles survive); crack faces are in the group "crack", others in
-// "original".
+// Wavefront OBJ with 17 significant digits (doubles survive), texture coordinates of the channel "uv" (no other
+// channel); crack faces are in the group "crack", others in "original".
 void write_obj(const SurfaceMesh& mesh, const std::string& path);
 
 }  // namespace sherd

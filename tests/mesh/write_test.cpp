@@ -65,11 +65,13 @@ TEST_F(Write, PlyHasCrackColumnsOnlyWithCracks) {
   const std::string plain = content(path("plain.ply")), crack = content(path("crack.ply"));
   const auto body = [](const std::string& text) { return text.size() - text.find("end_header\n") - 11; };
   EXPECT_EQ(body(plain), 8u * 12 + 12 * 13);
-  EXPECT_EQ(body(crack), 8u * 12 + 12 * 22);
+  EXPECT_EQ(body(crack), 8u * 12 + 12 * 25);
   EXPECT_EQ(plain.find("kind"), std::string::npos);
-  ASSERT_NE(crack.find("property uchar kind\nproperty int crack\nproperty int source\n"), std::string::npos);
-  const std::string face3 = crack.substr(crack.find("end_header\n") + 11 + 8 * 12 + 3 * 22 + 13, 9);
-  EXPECT_EQ(face3, std::string("\x01\x07\0\0\0\xFF\xFF\xFF\xFF", 9));
+  ASSERT_NE(crack.find("property uchar kind\nproperty int crack\nproperty int source\nproperty char side\nproperty "
+                       "ushort material\n"),
+            std::string::npos);
+  const std::string face3 = crack.substr(crack.find("end_header\n") + 11 + 8 * 12 + 3 * 25 + 13, 12);
+  EXPECT_EQ(face3, std::string("\x01\x07\0\0\0\xFF\xFF\xFF\xFF\0\0\0", 12));
   LoadLog log;
   expect_same_geometry(load_mesh(path("crack.ply"), {}, log), mesh);
 }
