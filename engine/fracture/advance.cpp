@@ -1,6 +1,7 @@
 #include "engine/fracture/advance.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace sherd {
 namespace {
@@ -9,21 +10,52 @@ constexpr Real kHitMargin = 0.35;    // of h: a surface this close beyond the st
 constexpr Real kLookAhead = 4.0;     // of h: how far the ray looks for the other side of a gap
 constexpr Real kMinRow = 0.3;        // of h: shorter ways move the node instead of adding a row
 constexpr Real kMinDistance = 0.95;  // of the overshoot: close enough to it
+constexpr Real kBehind = 0.05;       // of h
+constexpr Real kGiveWay = 0.5;       // of h: nearer to a stronger crack in its own plane a crack stops
 constexpr int kPushes = 4;
 constexpr int kMaxRefusals = 3;
 
 struct Target {
   Vec3 point;
-  bool exits = false;
+  NodeState state = NodeState::kActive;
+  std::int32_t met = kNoCrack;
 };
+
+// Where another crack stops the way from p; nothing beyond `reach` counts.
+std::optional<Target> find_junction(const Growth& g, const Vec3& p, const Vec3& normal, const Advance& a, Real reach) {
+  // From a little behind, so that a node that lies on the other crack stays there.
+  const Vec3 from = p - kBehind * g.h * a.direction;
+  const Real length = reach + kBehind * g.h;
+  std::optional<Target> nearest;
+  Real least = length;
+  const auto meet = [&](Real t, std::int32_t crack) {
+    if (nearest && t >= least) return;
+    least = t;
+    nearest = {p + std::max(t - kBehind * g.h, 0.0) * a.direction, NodeState::kBlocked, crack};
+  };
+  Obstacles::Hit hit;
+  if (g.options.obstacles && g.options.obstacles->first_hit(from, a.direction, length, normal, hit))
+    meet(hit.t, hit.crack);
+  for (const Rival& rival : g.rivals) {
+    Real t = 0;
+    if (rival.sheet->first_hit(from, a.direction, length, normal, t)) meet(t, rival.crack);
+    if (rival.stronger && rival.sheet->passes(p + a.length * a.direction, kGiveWay * g.h, normal))
+      meet(kBehind * g.h, rival.crack);
+  }
+  return nearest;
+}
 
 Target find_target(const Growth& g, const Vec3& p, const Vec3& normal, const Advance& a) {
   std::vector<TriangleBvh::Hit> hits;
   g.body.all_hits(p, a.direction, 0, a.length + kLookAhead * g.h, hits);
-  if (hits.empty() || hits.front().t > a.length + kHitMargin * g.h) return {p + a.length * a.direction, false};
+  const Real reach = a.length + kHitMargin * g.h;
+  if (g.options.obstacles || !g.rivals.empty())
+    if (const auto junction = find_junction(g, p, normal, a, hits.empty() ? reach : std::min(reach, hits.front().t)))
+      return *junction;
+  if (hits.empty() || hits.front().t > reach) return {p + a.length * a.direction};
   const Real gap = hits.size() > 1 ? hits[1].t - hits[0].t : 2 * g.overshoot;
   const Vec3 q = p + (hits[0].t + std::min(g.overshoot, 0.5 * gap)) * a.direction;
-  return {gap < 2 * g.overshoot ? q : push_out(g, q, normal), true};
+  return {gap < 2 * g.overshoot ? q : push_out(g, q, normal), NodeState::kExited};
 }
 
 // The strip at node i: the triangles that join its way p -> q to its loop neighbours.
@@ -39,10 +71,14 @@ bool add_row(Growth& g, FrontLoop& loop, std::size_t i, const Vec3& q, NodeState
 
 bool place(Growth& g, FrontLoop& loop, std::size_t i, const Target& target) {
   const std::uint32_t p = loop[i];
-  const NodeState state = target.exits ? NodeState::kExited : NodeState::kActive;
-  if (distance(g.sheet.position[p], target.point) >= kMinRow * g.h) return add_row(g, loop, i, target.point, state);
-  if (!g.sheet.move(p, target.point)) return false;
-  g.sheet.state[p] = state;
+  const Real way = distance(g.sheet.position[p], target.point);
+  if (way >= kMinRow * g.h) {
+    if (!add_row(g, loop, i, target.point, target.state)) return false;
+  } else {
+    if (way > 0 && !g.sheet.move(p, target.point)) return false;
+    g.sheet.state[p] = target.state;
+  }
+  g.sheet.met[loop[i]] = target.met;
   return true;
 }
 

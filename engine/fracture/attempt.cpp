@@ -143,8 +143,20 @@ bool Attempt::retreat() {
   return true;
 }
 
+std::vector<std::int32_t> Attempt::cracks_met() const {
+  std::vector<std::int32_t> met;
+  for (const FrontLoop& loop : growth_.loops)
+    for (const std::uint32_t v : loop)
+      if (growth_.sheet.state[v] == NodeState::kBlocked && growth_.sheet.met[v] != kNoCrack)
+        met.push_back(growth_.sheet.met[v]);
+  std::sort(met.begin(), met.end());
+  met.erase(std::unique(met.begin(), met.end()), met.end());
+  return met;
+}
+
 void Attempt::judge(GrowthResult& result) const {
   const Growth& g = growth_;
+  result.met = cracks_met();
   std::size_t live = 0;
   Vec3 place;
   for (const FrontLoop& loop : g.loops)
@@ -158,7 +170,7 @@ void Attempt::judge(GrowthResult& result) const {
     result.reason = "the front runs along its own sheet " + where;
   else if (!ended_)
     result.reason = fmt::format("still growing after {} steps {}", steps_, where);
-  else if (any_node(g, NodeState::kArrested))
+  else if (any_node(g, NodeState::kArrested) || !result.met.empty())
     result.outcome = GrowthOutcome::kArrested;
   else if (any_node(g, NodeState::kBlocked))
     result.reason = "the front is blocked by its own sheet " + where;
@@ -196,6 +208,7 @@ GrowthResult Attempt::finish() {
   result.reason = test(result.sheet);
   if (!result.reason.empty()) {
     result.outcome = GrowthOutcome::kFailed;
+    result.sheet = {};
     return result;
   }
   const SheetExtent extent = extent_inside(result.sheet, g.body);

@@ -21,6 +21,7 @@ class Attempt {
 
  private:
   void judge(GrowthResult& result) const;
+  std::vector<std::int32_t> cracks_met() const;
   std::string test(const CrackSheet& sheet) const;
   CrackSheet extract() const;
 

@@ -12,6 +12,7 @@ namespace {
 constexpr Real kMinStep = 0.4, kMaxStep = 0.8;
 constexpr Real kMinTurnCosine = 0.5;  // a crack turns by at most 60 degrees a step: eigenvectors swap at equal values
 constexpr std::size_t kSteerLoopDistance = 5;
+constexpr Real kWallRange = 2.5, kWallFull = 0.5;  // of h: older crack walls attract from here, and fully from here
 // Of h: layers of the sheet keep at least this distance. Arms that meet out of line are then held edge to edge, where
 // they can be joined, instead of one running over the other.
 constexpr Real kMinClearance = 0.2;
@@ -119,17 +120,33 @@ const FrontNode* facing_node(const Growth& g, const std::vector<FrontNode>& fron
   return best;
 }
 
+// Turns a node's way towards `target` by the weight, the crack plane with it.
+bool bend(Growth& g, const FrontNode& a, const Vec3& target, Real weight, Advance& advance) {
+  const Vec3 o = normalized((1 - weight) * advance.direction + weight * normalized(target - g.sheet.position[a.node]));
+  const Vec3 n = g.sheet.normal[a.node], turned = normalized(n - dot(n, o) * o);
+  if (norm2(o) == 0 || norm2(turned) == 0) return false;
+  advance.direction = o;
+  g.sheet.normal.set(a.node, turned);
+  return true;
+}
+
+// A crack meets the wall of an older one at a right angle: no traction acts across it.
+void steer_to_wall(Growth& g, const FrontNode& a, Advance& advance) {
+  Vec3 wall;
+  const Vec3 p = g.sheet.position[a.node];
+  if (!g.options.obstacles || !g.options.obstacles->nearest_wall(p, kWallRange * g.h, wall)) return;
+  const Real length = distance(p, wall);
+  if (!(dot(a.outward, wall - p) > 0.3 * length)) return;
+  bend(g, a, wall, std::clamp((kWallRange - length / g.h) / (kWallRange - kWallFull), 0.0, 1.0), advance);
+}
+
 // Without this, arms of one crack that run around a cavity pass each other and never close.
 void steer(Growth& g, const FrontNode& a, const FrontNode& w, Advance& advance) {
   const Vec3 d = g.sheet.position[w.node] - g.sheet.position[a.node];
   const Real length = norm(d),
              weight = std::clamp(1 - (length - g.steer_full * g.h) / ((g.steer_range - g.steer_full) * g.h), 0.0, 1.0);
-  const Vec3 o = normalized((1 - weight) * advance.direction + weight / length * d);
-  const Vec3 n = g.sheet.normal[a.node], turned = normalized(n - dot(n, o) * o);
-  if (norm2(o) == 0 || norm2(turned) == 0) return;
-  advance.direction = o;
+  if (!bend(g, a, g.sheet.position[w.node], weight, advance)) return;
   advance.length = std::min(advance.length, 0.45 * length);  // facing nodes never pass each other
-  g.sheet.normal.set(a.node, turned);
   g.steered = true;
 }
 
@@ -214,7 +231,10 @@ std::vector<std::vector<Advance>> front_velocity(Growth& g) {
   for (const FrontNode& a : front) {
     Advance& advance = velocity[a.loop][a.place];
     if (!(advance.length > 0)) continue;
-    if (const FrontNode* w = facing_node(g, front, a)) steer(g, a, *w, advance);
+    if (const FrontNode* w = facing_node(g, front, a))
+      steer(g, a, *w, advance);
+    else
+      steer_to_wall(g, a, advance);
   }
   return velocity;
 }

@@ -9,6 +9,13 @@ namespace sherd {
 
 using FrontLoop = std::vector<std::uint32_t>;
 
+// Another crack that grows in the same body at the same time.
+struct Rival {
+  SheetMesh* sheet;    // never null
+  std::int32_t crack;  // its number in GrowthResult::met
+  bool stronger;       // where both grow in one plane, the weaker one gives way
+};
+
 struct Growth {
   Growth(const TriangleBvh& body_, const CrackField& field_, const GrowthOptions& options_, Real edge, Real overshoot_);
 
@@ -25,6 +32,7 @@ struct Growth {
   // second distance they head straight for each other.
   Real steer_range = 9, steer_full = 1.5;
   bool steered = false;  // some front did
+  std::vector<Rival> rivals;
   Vec3 seed_normal;
   Real reference_stress = 0;  // Pa, the stress that gives the nominal step length
   SheetMesh sheet;

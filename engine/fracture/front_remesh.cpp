@@ -52,6 +52,7 @@ bool split_edge(Growth& g, FrontLoop& loop, std::size_t i) {
   }
   if (m == kNone) m = split_border_edge(g, a, b, middle, state);
   if (m == kNone) return false;
+  if (state == NodeState::kBlocked) g.sheet.met[m] = g.sheet.met[a];
   const std::size_t at = i + 1;
   loop.insert(loop.begin() + static_cast<std::ptrdiff_t>(at), m);
   if (exited && !outside && length < g.h) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/fracture/crack_field.h"
+#include "engine/fracture/obstacles.h"
 #include "engine/fracture/sheet.h"
 #include "engine/material/scalar_field.h"
 #include "engine/mesh/bvh.h"
@@ -30,6 +31,7 @@ struct GrowthOptions {
   // When given, they take the place of the numbers above. Borrowed: they outlive the growth.
   const ScalarField* propagation_field = nullptr;
   const ScalarField* thickness_field = nullptr;
+  const Obstacles* obstacles = nullptr;  // nodes that reach one are blocked there: a T-junction
   // The last test of a rung of the ladder, asked with the sheet as it will be returned, complete or arrested: a text
   // refuses it with that reason and the next rung is tried. When given, it takes the place of the test that the slab
   // closes and does not meet itself.
@@ -50,8 +52,10 @@ struct GrowthResult {
   CrackSheet sheet;
   int ladder_level = 0;  // the rung this is the result of
   int steps = 0;
-  Real area = 0;       // of the sheet part inside the body, m^2
-  Real length = 0;     // of the sheet's trace on the body's surface, m
+  Real area = 0;    // of the sheet part inside the body, m^2
+  Real length = 0;  // of the sheet's trace on the body's surface, m
+  std::vector<std::int32_t>
+      met;             // cracks at which nodes are blocked, ascending: once those are cut, the crack may go on
   std::string reason;  // of a rejection or failure; with ladder_level > 0 why the true field failed
   Rungs rungs;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/fracture/obstacles.h"
 #include "engine/mesh/intersections.h"
 
 namespace sherd {
@@ -63,7 +64,8 @@ SheetMesh::SheetMesh(Real edge_length, Real clearance)
 
 std::uint32_t SheetMesh::add_node(const Vec3& p, const Vec3& n, NodeState s) {
   position.push_back(p), normal.push_back(n), state.push_back(s);
-  failures.push_back(0), stress_known.push_back(0), stress.push_back({}), moves.push_back(0), incident.emplace_back();
+  met.push_back(kNoCrack), failures.push_back(0), stress_known.push_back(0), stress.push_back({}), moves.push_back(0),
+      incident.emplace_back();
   return static_cast<std::uint32_t>(state.size() - 1);
 }
 
@@ -242,6 +244,35 @@ bool SheetMesh::has_layer(std::uint32_t v, Real reach) {
     // The surroundings of a node whose crack turns sharply lie in its normal's way, too.
     if (is_near(n[0]) || is_near(n[1]) || is_near(n[2])) return false;
     return triangles_intersect({a, b, b}, corners_of(t));
+  });
+}
+
+Vec3 SheetMesh::normal_of(std::uint32_t t) const {
+  const std::array<Vec3, 3> c = corners_of(t);
+  return normalized(cross(c[1] - c[0], c[2] - c[0]));
+}
+
+bool SheetMesh::first_hit(const Vec3& from, const Vec3& direction, Real length, const Vec3& plane, Real& t) {
+  const Vec3 to = from + length * direction;
+  grid_.query(box_around({from, to, to}, 0), candidates_);
+  bool found = false;
+  for (const std::uint32_t c : candidates_) {
+    const Vec3 n = normal_of(c);
+    const Real slope = dot(direction, n);
+    if (!lies_across(n, plane) || slope == 0 || !triangles_intersect({from, to, to}, corners_of(c))) continue;
+    const Real at = std::clamp(dot(corners_of(c)[0] - from, n) / slope, 0.0, length);
+    if (!found || at < t) t = at;
+    found = true;
+  }
+  return found;
+}
+
+bool SheetMesh::passes(const Vec3& x, Real reach, const Vec3& plane) {
+  grid_.query(box_around({x, x, x}, reach), candidates_);
+  return std::any_of(candidates_.begin(), candidates_.end(), [&](std::uint32_t t) {
+    const std::array<Vec3, 3> c = corners_of(t);
+    return !lies_across(normal_of(t), plane) &&
+           distance2(closest_point_on_triangle(x, c[0], c[1], c[2]), x) < reach * reach;
   });
 }
 

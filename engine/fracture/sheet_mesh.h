@@ -1,6 +1,7 @@
 // The sheet while it grows: nodes, triangles, adjacency and a spatial index, changed only by transactions that keep it
 // an embedded oriented 2-manifold with border (the design's S1, S2). Internal to the fracture stage.
 #pragma once
+#include <limits>
 #include <unordered_map>
 
 #include "engine/fracture/crack_field.h"
@@ -29,6 +30,8 @@ class BoxGrid {
 
 // One transaction: triangles to remove, at most one node to move, triangles to add. The caller keeps the topology right
 // (directed edges used once, no pinch); geometry is what apply() judges.
+inline constexpr std::int32_t kNoCrack = std::numeric_limits<std::int32_t>::min();
+
 struct SheetEdit {
   std::vector<std::uint32_t> remove;
   std::vector<Triangle> add;
@@ -55,6 +58,10 @@ class SheetMesh {
   std::vector<std::uint32_t> neighbours(std::uint32_t v) const;
   // Does the sheet pass over or under node v, nearer than `reach` along its normal?
   bool has_layer(std::uint32_t v, Real reach);
+  // The first triangle that runs across the plane with unit normal `plane` on the way from `from`, t in [0, length].
+  bool first_hit(const Vec3& from, const Vec3& direction, Real length, const Vec3& plane, Real& t);
+  // Does the sheet pass nearer than `reach` to x, along the plane?
+  bool passes(const Vec3& x, Real reach, const Vec3& plane);
   // Nodes and triangles of a sheet that check_sheet() accepts; this mesh is empty.
   void load(const CrackSheet& sheet);
   // Without dead triangles and unused nodes; the order of nodes and triangles is kept. `front`: loops to translate.
@@ -62,6 +69,7 @@ class SheetMesh {
 
   Vec3Column position, normal;
   std::vector<NodeState> state;
+  std::vector<std::int32_t> met;           // of a blocked node: the crack that stopped it; kNoCrack: its own sheet
   std::vector<std::uint8_t> failures;      // refused advances in a row, per node
   std::vector<std::uint8_t> stress_known;  // `stress` belongs to the node's present position
   std::vector<PrincipalStress> stress;
@@ -84,6 +92,7 @@ class SheetMesh {
   bool crowds(const Trial& trial, const Triangle& nodes, const std::array<Vec3, 3>& corners) const;
   bool hidden(std::uint32_t t, const SheetEdit& edit) const;
   Box box_of(std::uint32_t t) const;
+  Vec3 normal_of(std::uint32_t t) const;
   std::array<Vec3, 3> corners_of(std::uint32_t t) const;
   void link(std::uint32_t t);
   void unlink(std::uint32_t t);

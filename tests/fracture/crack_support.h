@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/fracture/grow.h"
+#include "engine/fracture/check_growth.h"
 #include "engine/fracture/synthetic_fields.h"
 #include "engine/fracture/thicken.h"
 #include "engine/mesh/shapes.h"
@@ -53,30 +53,11 @@ inline Real sheet_area(const CrackSheet& s) {
   return sum;
 }
 
-// S3, S5: what the outcome claims about the border. Returns the first violation, or an empty string.
-inline std::string check_border(const CrackSheet& s, const TriangleBvh& body, GrowthOutcome outcome) {
-  std::vector<TriangleBvh::Hit> hits;
-  bool complete = true, arrested = false;
-  for (const auto& loop : border_loops(s))
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      const std::uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
-      if (s.state[a] == NodeState::kInterior) return "a border node is interior";
-      if (s.state[a] == NodeState::kExited && body.inside(s.position[a])) return "an exited node lies inside";
-      if (s.state[a] == NodeState::kArrested) arrested = true;
-      body.all_hits(s.position[a], s.position[b] - s.position[a], 0, 1, hits);
-      complete &= s.state[a] == NodeState::kExited && s.state[b] == NodeState::kExited && hits.empty();
-    }
-  if (complete != (outcome == GrowthOutcome::kComplete)) return "completeness is not what the border shows";
-  if (outcome == GrowthOutcome::kArrested && !arrested) return "arrested without an arrested node";
-  return {};
-}
-
 // Every law a grown sheet and its slab obey.
 inline std::string check_grown(const GrowthResult& r, const Specimen& body, Real thickness) {
   if (r.outcome != GrowthOutcome::kComplete && r.outcome != GrowthOutcome::kArrested)
     return r.reason.empty() ? "failed without a reason" : "";
-  if (std::string bad = check_sheet(r.sheet); !bad.empty()) return bad;
-  if (std::string bad = check_border(r.sheet, body.bvh, r.outcome); !bad.empty()) return bad;
+  if (std::string bad = check_growth(r, body.bvh, body.options()); !bad.empty()) return bad;
   std::string reason;
   const auto slab = thicken(r.sheet, thickness, 7, reason);
   if (!slab) return reason;

@@ -72,9 +72,7 @@ TEST(ResumeCrack, ACrackResumedTwiceWithoutLoadStaysTheSame) {
 TEST(ResumeCrack, NodesOutsideThePieceThatInheritsItCountAsThrough) {
   // A crack stopped half-way down a cube, and the upper part of the cube, which another crack cut off since.
   const Specimen cube(make_box({1, 1, 1}, 0.08));
-  const FunctionField field([](const Vec3& p) {
-    return PrincipalStress{p.y > 0 ? 1.0 : 0.1, {1, 0, 0}};
-  });
+  const FunctionField field([](const Vec3& p) { return PrincipalStress{p.y > 0 ? 1.0 : 0.1, {1, 0, 0}}; });
   const CrackSeed seed = cube.seed_at(cube.nearest_vertex({0.03, 0.5, 0}), field);
   const GrowthResult half = grow_crack(cube.bvh, field, seed, cube.options());
   ASSERT_EQ(half.outcome, GrowthOutcome::kArrested) << half.reason;
