@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "engine/mesh/shapes.h"
-#include "engine/mesh/write.h"
 #include "tests/scene/scene_file.h"
 
 namespace sherd {
@@ -104,10 +103,9 @@ TEST_F(CrackKeys, ImpossibleFieldsAreRefusedAtTheirPlace) {
       strength("kind = \"noise\", amplitude = 1, wavelength = 0.1"),
       "scene.toml:4:53: body.material.strength.amplitude: value 1 not allowed; allowed range from 0 and below 1 of "
       "the mean");
-  EXPECT_EQ(
-      strength("kind = \"noise\", mean = 200, amplitude = 0.9, wavelength = 0.1"),
-      "scene.toml:4:24: body.material.strength: value {amplitude = 0.9, kind = \"noise\", mean = 200, wavelength "
-      "... not allowed; allowed range 100 to 1e+12 Pa at every place; the field spans 20 to 380");
+  EXPECT_EQ(strength("kind = \"noise\", mean = 200, amplitude = 0.9, wavelength = 0.1"),
+            "scene.toml:4:24: body.material.strength: value {amplitude = 0.9, kind = \"noise\", mean = 200, wavelength "
+            "... not allowed; allowed range 100 to 1e+12 Pa at every place; the field spans 20 to 380");
   EXPECT_EQ(
       strength("kind = \"layers\", offsets = [0, 1], values = [1e6, 2e6]"),
       "scene.toml:4:69: body.material.strength.values: value [1000000, 2000000] not allowed; allowed count: 3, one "
@@ -136,6 +134,24 @@ TEST_F(CrackKeys, AMissingAttributeNamesTheBody) {
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()).substr(0, 53), "ball: the mesh has no vertex attribute \"paint\"; it ha");
   }
+}
+
+TEST_F(CrackKeys, PaintOnAFilesVerticesBecomesAStrength) {
+  // A cube with 0 painted on its lower and 1 on its upper vertices.
+  std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float paint\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n";
+  for (int i = 0; i < 8; ++i)
+    ply += std::to_string(i & 1) + " " + std::to_string((i >> 1) & 1) + " " + std::to_string(i >> 2) + " " +
+           std::to_string((i >> 1) & 1) + "\n";
+  write("cube.ply", ply + "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n");
+  const Scene scene = load(
+      "[[body]]\nname = \"cube\"\nmesh = \"cube.ply\"\nscale = 0.1\n"
+      "material = {strength = {kind = \"attribute\", name = \"paint\", low = 1e7, high = 3e7}}\n");
+  std::vector<std::string> messages;
+  const SurfaceMesh mesh = scene_mesh(scene.bodies[0], messages);
+  const MaterialFields fields = scene_fields(scene.bodies[0], mesh);
+  for (const Real y : {0.0, 0.03, 0.1}) EXPECT_NEAR(fields.strength->at({0.1, y, 0.05}), 1e7 + 2e8 * y, 10);
 }
 
 TEST_F(CrackKeys, GuidedCracksAndNotchesArrive) {
