@@ -9,6 +9,13 @@
 namespace sherd::campaign {
 namespace {
 
+// V2: a crack that went through separates, or cuts a handle open. One that lies in a face of the body does neither.
+bool does_nothing(const CutBody& body, const CrackSheet& sheet, const CutResult& cut) {
+  for (const NodeState state : sheet.state)
+    if (state == NodeState::kArrested || state == NodeState::kBlocked) return false;
+  return !cut.separated && cut.euler <= body.euler();
+}
+
 // The test of a rung: the sheet must become a slab, and the slab must cut the body. Keeps both.
 std::string slab_and_cut(const Specimen& s, const GrowthOptions& options, Real min_fragment_volume,
                          const CrackSheet& sheet, Crack& crack) {
@@ -20,7 +27,8 @@ std::string slab_and_cut(const Specimen& s, const GrowthOptions& options, Real m
   o.edge_length = options.edge_length, o.min_fragment_volume = min_fragment_volume, o.slab_checked = true;
   crack.slab = std::move(*slab);
   crack.cut = cut(s.body, crack.slab, o);
-  return crack.cut.ok ? "" : "the cut is refused: " + crack.cut.reason;
+  if (!crack.cut.ok) return "the cut is refused: " + crack.cut.reason;
+  return does_nothing(s.body, sheet, crack.cut) ? "the crack is complete and separates nothing" : "";
 }
 
 // False when the seed opens no crack or all rungs failed.
