@@ -8,17 +8,27 @@
 namespace sherd {
 namespace {
 
-// The columns of attributes are complete whatever the caller left out.
-SurfaceMesh with_attributes(SurfaceMesh mesh) {
-  mesh.faces.resize(mesh.triangle_count());
-  return mesh;
+// Keeps the order of the others.
+void drop_unused_vertices(SurfaceMesh& mesh) {
+  std::vector<std::uint32_t> place(mesh.vertex_count(), 0);
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) place[v] = 1;
+  if (std::count(place.begin(), place.end(), 0u) == 0) return;
+  std::uint32_t count = 0;
+  for (std::uint32_t v = 0; v < place.size(); ++v) {
+    if (place[v] == 0) continue;
+    mesh.vertices.set(count, mesh.vertices[v]);
+    place[v] = count++;
+  }
+  mesh.vertices.resize(count);
+  for (Triangle& t : mesh.triangles) t = {place[t[0]], place[t[1]], place[t[2]]};
 }
 
-std::int64_t euler_of(const SurfaceMesh& mesh) {
-  std::vector<char> used(mesh.vertex_count(), 0);
-  for (const Triangle& t : mesh.triangles)
-    for (const std::uint32_t v : t) used[v] = 1;
-  return std::count(used.begin(), used.end(), 1) - static_cast<std::int64_t>(mesh.triangle_count() / 2);
+// The columns of attributes are complete whatever the caller left out.
+SurfaceMesh tidied(SurfaceMesh mesh) {
+  mesh.faces.resize(mesh.triangle_count());
+  drop_unused_vertices(mesh);
+  return mesh;
 }
 
 }  // namespace
@@ -27,7 +37,7 @@ CutBody::CutBody(SurfaceMesh mesh) : CutBody(std::move(mesh), check_numbers(mesh
 
 // Indices out of range must not reach the trees.
 CutBody::CutBody(SurfaceMesh&& mesh, std::string defect)
-    : defect_(std::move(defect)), operand_(defect_.empty() ? with_attributes(std::move(mesh)) : SurfaceMesh{}) {
+    : defect_(std::move(defect)), operand_(defect_.empty() ? tidied(std::move(mesh)) : SurfaceMesh{}) {
   if (!defect_.empty()) return;
   if (defect_ = check_attributes(operand_.mesh); !defect_.empty()) return;
   if (const std::string text = check_manifold(operand_.mesh, operand_.twin); !text.empty()) {
@@ -37,7 +47,8 @@ CutBody::CutBody(SurfaceMesh&& mesh, std::string defect)
   label_shells();
   for (const BodyShell& s : shells_) volume_ += s.volume;
   if (!(volume_ > 0)) defect_ = "the body has no positive volume";
-  euler_ = euler_of(operand_.mesh);
+  const SurfaceMesh& own = operand_.mesh;
+  euler_ = static_cast<std::int64_t>(own.vertex_count()) - static_cast<std::int64_t>(own.triangle_count() / 2);
 }
 
 void CutBody::label_shells() {

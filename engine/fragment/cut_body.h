@@ -15,7 +15,7 @@ struct BodyShell {
 
 class CutBody {
  public:
-  // Never throws for a bad mesh: see defect().
+  // Vertices in no face are dropped. Never throws for a bad mesh: see defect().
   explicit CutBody(SurfaceMesh mesh);
 
   const SurfaceMesh& mesh() const { return operand_.mesh; }

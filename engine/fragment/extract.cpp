@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 
 #include "engine/fragment/components.h"
 #include "engine/mesh/attributes.h"
@@ -11,21 +12,7 @@ struct Run {
   std::uint32_t first, last;
 };
 
-// Of the faces with keep[f].
-std::vector<Run> runs_of(const std::vector<char>& keep) {
-  std::vector<Run> runs;
-  for (std::uint32_t f = 0; f < keep.size(); ++f) {
-    if (!keep[f]) continue;
-    if (!runs.empty() && runs.back().last == f) {
-      ++runs.back().last;
-    } else {
-      runs.push_back({f, f + 1});
-    }
-  }
-  return runs;
-}
-
-// Whole body faces of a solid that has only what the walk came over, ascending.
+// Whole body faces of a solid that has only what the walk came over.
 std::vector<Run> walked_faces(const Components& components, const CutSolid& solid) {
   std::vector<std::uint32_t> faces;
   for (const std::uint32_t s : solid.shells)
@@ -36,46 +23,92 @@ std::vector<Run> walked_faces(const Components& components, const CutSolid& soli
   return runs;
 }
 
-// Of a solid that has rests of the body's shells.
-std::vector<Run> rest_faces(const Carving& carving, const Components& components, const CutSolid& solid) {
+// Body faces that a solid with rests of the body's shells does not have as a whole, ascending.
+std::vector<std::uint32_t> faces_left_out(const Carving& carving, const Components& components, const CutSolid& solid) {
   const CutBody& body = carving.body();
   std::vector<char> has_rest(body.shells().size(), 0);
   for (const std::uint32_t s : solid.shells)
     for (const std::uint32_t r : components.shells[s].rest) has_rest[r] = 1;
-  std::vector<char> keep(body.mesh().triangle_count(), 1);
-  if (has_rest.size() > 1)
-    for (std::uint32_t f = 0; f < keep.size(); ++f) keep[f] = has_rest[body.shell_of(f)];
-  for (const auto* list : {&carving.cut, &carving.dropped})
-    for (const std::uint32_t f : *list) keep[f] = 0;
-  for (const CutShell& shell : components.shells)
-    for (const std::uint32_t f : shell.whole) keep[f] = 0;
+  std::vector<std::uint32_t> out = carving.cut;
+  out.insert(out.end(), carving.dropped.begin(), carving.dropped.end());
+  SparseMap own;
   for (const std::uint32_t s : solid.shells)
-    for (const std::uint32_t f : components.shells[s].whole) keep[f] = 1;
-  return runs_of(keep);
+    for (const std::uint32_t f : components.shells[s].whole) own.insert(f, 1);
+  for (const CutShell& shell : components.shells)
+    for (const std::uint32_t f : shell.whole)
+      if (!own.contains(f)) out.push_back(f);
+  if (std::count(has_rest.begin(), has_rest.end(), 0) > 0)
+    for (std::uint32_t f = 0; f < body.mesh().triangle_count(); ++f)
+      if (!has_rest[body.shell_of(f)] && !own.contains(f)) out.push_back(f);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+std::vector<Run> runs_between(const std::vector<std::uint32_t>& left_out, std::uint32_t count) {
+  std::vector<Run> runs;
+  std::uint32_t first = 0;
+  for (const std::uint32_t f : left_out) {
+    if (first < f) runs.push_back({first, f});
+    first = f + 1;
+  }
+  if (first < count) runs.push_back({first, count});
+  return runs;
 }
 
 // Renumbers to the used vertices, in order.
-void take_vertices(const Carving& carving, std::uint32_t vertices, SurfaceMesh& mesh) {
-  constexpr std::size_t kSmall = 16;  // times fewer triangles than vertices: sorting is cheaper than a column of all
-  if (kSmall * mesh.triangle_count() < vertices) {
-    std::vector<std::uint32_t> used;
-    for (const Triangle& t : mesh.triangles) used.insert(used.end(), t.begin(), t.end());
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-    SparseMap place;
-    for (std::uint32_t i = 0; i < used.size(); ++i)
-      place.insert(used[i], i), mesh.vertices.push_back(carving.position(used[i]));
-    for (Triangle& t : mesh.triangles) t = {place[t[0]], place[t[1]], place[t[2]]};
-    return;
-  }
-  std::vector<char> used(vertices, 0);
-  for (const Triangle& t : mesh.triangles) used[t[0]] = used[t[1]] = used[t[2]] = 1;
-  std::vector<std::uint32_t> place(vertices);
-  std::uint32_t count = 0;
-  for (std::uint32_t v = 0; v < vertices; ++v) place[v] = count, count += static_cast<std::uint32_t>(used[v]);
-  mesh.vertices.resize(count);
-  for (std::uint32_t v = 0; v < vertices; ++v)
-    if (used[v]) mesh.vertices.set(place[v], carving.position(v));
+void take_used_vertices(const Carving& carving, SurfaceMesh& mesh) {
+  std::vector<std::uint32_t> used;
+  for (const Triangle& t : mesh.triangles) used.insert(used.end(), t.begin(), t.end());
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  SparseMap place;
+  for (std::uint32_t i = 0; i < used.size(); ++i)
+    place.insert(used[i], i), mesh.vertices.push_back(carving.position(used[i]));
+  for (Triangle& t : mesh.triangles) t = {place[t[0]], place[t[1]], place[t[2]]};
+}
+
+// The same for a mesh of nearly the whole body: looks only at the corners of the faces left out for vertices that go.
+void take_most_vertices(const Carving& carving, const std::vector<std::uint32_t>& left_out,
+                        const std::vector<std::uint32_t>& parts, SurfaceMesh& mesh) {
+  const CutBody& body = carving.body();
+  SparseMap out, used;
+  for (const std::uint32_t f : left_out) out.insert(f, 1);
+  std::vector<std::uint32_t> fresh, gone;  // of the slab and crossings; of the body
+  for (const std::uint32_t i : parts)
+    for (const std::uint32_t v : carving.faces[i].vertices)
+      if (used.insert(v, 1) && v >= carving.body_vertices()) fresh.push_back(v);
+  std::sort(fresh.begin(), fresh.end());
+  for (const std::uint32_t f : left_out)
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = body.mesh().triangles[f][k];
+      if (!used.insert(v, 1)) continue;
+      bool stays = false;
+      std::uint32_t e = 3 * f + k;
+      do {
+        stays = !out.contains(e / 3);
+        e = body.twins()[e % 3 == 0 ? e + 2 : e - 1];
+      } while (!stays && e != 3 * f + k);
+      if (!stays) gone.push_back(v);
+    }
+  std::sort(gone.begin(), gone.end());
+  std::vector<std::uint32_t> place(carving.vertex_count());
+  const Vec3Column& from = body.mesh().vertices;
+  Vec3Column& to = mesh.vertices;
+  to.reserve(from.size() - gone.size() + fresh.size());
+  std::uint32_t first = 0, shift = 0;
+  const auto copy_until = [&](std::uint32_t last) {
+    const auto append = [&](const std::vector<Real>& a, std::vector<Real>& b) {
+      b.insert(b.end(), a.begin() + first, a.begin() + last);
+    };
+    append(from.x, to.x), append(from.y, to.y), append(from.z, to.z);
+    std::iota(place.begin() + first, place.begin() + last, first - shift);
+    first = last + 1, ++shift;
+  };
+  for (const std::uint32_t v : gone) copy_until(v);
+  copy_until(carving.body_vertices());
+  for (const std::uint32_t v : fresh)
+    place[v] = static_cast<std::uint32_t>(to.size()), to.push_back(carving.position(v));
   for (Triangle& t : mesh.triangles) t = {place[t[0]], place[t[1]], place[t[2]]};
 }
 
@@ -103,13 +136,19 @@ SurfaceMesh extract_solid(const Carving& carving, const Components& components, 
     mesh.faces.push_back_from(from.faces, f.parent);
     interpolate_corners(from, f.parent, carving.corners(carving.body_faces() + i), mesh);
   };
-  for (const Run& run : rests ? rest_faces(carving, components, solid) : walked_faces(components, solid)) {
+  std::vector<std::uint32_t> left_out;
+  if (rests) left_out = faces_left_out(carving, components, solid);
+  for (const Run& run : rests ? runs_between(left_out, carving.body_faces()) : walked_faces(components, solid)) {
     while (next < parts.size() && !carving.faces[parts[next]].of_slab && carving.faces[parts[next]].parent < run.first)
       add_part();
     append_faces(body, run.first, run.last, mesh);
   }
   while (next < parts.size()) add_part();
-  take_vertices(carving, carving.vertex_count(), mesh);
+  if (rests) {
+    take_most_vertices(carving, left_out, parts, mesh);
+  } else {
+    take_used_vertices(carving, mesh);
+  }
   return mesh;
 }
 
