@@ -73,6 +73,105 @@ bool meet(const Carving& carving, std::uint32_t f, std::uint32_t g) {
   return triangles_intersect(s, a, t, b);
 }
 
+// Looks for bad faces among some of the new ones.
+class BadFaceSearch {
+ public:
+  BadFaceSearch(const Carving& carving, const std::vector<std::uint32_t>& tested, Real least_area)
+      : carving_(carving),
+        tested_(tested),
+        least_area_(least_area),
+        shift_(carving.body_faces()),
+        others_(rest_of(carving, tested)),
+        tree_(tree_of(carving, tested)),
+        other_tree_(tested.size() < kFew ? tree_of(carving, {}) : tree_of(carving, others_)) {
+    if (tested.size() < kFew)
+      for (const std::uint32_t j : others_)
+        if (tree_.box().overlaps(box_of(shift_ + j))) close_.push_back(j);
+    // Parts of one face lie together: what is near the face is looked up once for all of them.
+    for (std::size_t i = 0; i < tested.size(); ++i) {
+      const NewFace &own = carving.faces[tested[i]], &last = carving.faces[tested[i == 0 ? 0 : i - 1]];
+      if (i == 0 || own.parent != last.parent || own.of_slab != last.of_slab) groups_.push_back(i);
+    }
+    groups_.push_back(tested.size());
+  }
+
+  BadFaces run() const {
+    constexpr std::size_t kGrain = 16;
+    std::vector<std::vector<Found>> found(groups_.size() / kGrain + 1);
+    parallel_for_chunks(groups_.size() - 1, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t g = begin; g < end; ++g) test_group(groups_[g], groups_[g + 1], found[begin / kGrain]);
+    });
+    BadFaces bad;
+    for (const auto& list : found)
+      for (const Found& one : list) {
+        if (bad.faces.empty()) bad.reason = one.reason;
+        bad.faces.push_back(one.face);
+      }
+    std::sort(bad.faces.begin(), bad.faces.end());
+    bad.faces.erase(std::unique(bad.faces.begin(), bad.faces.end()), bad.faces.end());
+    return bad;
+  }
+
+ private:
+  struct Found {
+    std::uint32_t face;
+    const char* reason;
+  };
+
+  static std::vector<std::uint32_t> rest_of(const Carving& carving, const std::vector<std::uint32_t>& tested) {
+    std::vector<std::uint32_t> rest;
+    for (std::uint32_t i = 0, next = 0; i < carving.faces.size(); ++i) {
+      if (next < tested.size() && tested[next] == i) {
+        ++next;
+      } else if (carving.faces[i].alive) {
+        rest.push_back(i);
+      }
+    }
+    return rest;
+  }
+  Box box_of(std::uint32_t f) const {
+    Box box;
+    for (const Vec3& p : carving_.corners(f)) box.grow(p);
+    return box;
+  }
+
+  void test_group(std::size_t begin, std::size_t end, std::vector<Found>& found) const {
+    Box group;
+    for (std::size_t i = begin; i < end; ++i) group.grow(box_of(shift_ + tested_[i]));
+    std::vector<std::uint32_t> parts, whole, others;
+    tree_.overlapping(group, parts);
+    carving_.body().bvh().overlapping(group, whole);
+    std::erase_if(whole, [&](std::uint32_t f) { return !carving_.alive(f); });
+    other_tree_.overlapping(group, others);
+    for (std::uint32_t& j : others) j = others_[j];
+    others.insert(others.end(), close_.begin(), close_.end());
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t own = tested_[i];
+      const auto c = carving_.corners(shift_ + own);
+      const Box box = box_of(shift_ + own);
+      const auto meets = [&](std::uint32_t f) { return box.overlaps(box_of(f)) && meet(carving_, shift_ + own, f); };
+      if (!(0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) > least_area_))
+        found.push_back({own, "a part of a cut face has no area"});
+      for (const std::uint32_t j : parts)
+        if (j > i && meets(shift_ + tested_[j]))
+          for (const std::uint32_t face : {own, tested_[j]})
+            found.push_back({face, "two parts of cut faces intersect after rounding"});
+      for (const std::uint32_t f : whole)
+        if (meets(f)) found.push_back({own, "a part of a cut face intersects a whole face after rounding"});
+      for (const std::uint32_t j : others)
+        if (meets(shift_ + j)) found.push_back({own, "a part of a cut face intersects a wall after rounding"});
+    }
+  }
+
+  const Carving& carving_;
+  const std::vector<std::uint32_t>& tested_;
+  Real least_area_;
+  std::uint32_t shift_;
+  std::vector<std::uint32_t> others_, close_;  // new faces not tested; those to compare with one by one
+  TriangleBvh tree_, other_tree_;
+  std::vector<std::size_t> groups_;  // borders between parents in tested_
+};
+
 }  // namespace
 
 std::string check_numbers(const SurfaceMesh& mesh, const char* name) {
@@ -141,66 +240,7 @@ std::string check_links(const Carving& carving) {
 }
 
 BadFaces find_bad_faces(const Carving& carving, const std::vector<std::uint32_t>& tested, Real least_area) {
-  const std::uint32_t shift = carving.body_faces();
-  std::vector<std::uint32_t> others;
-  for (std::uint32_t i = 0, next = 0; i < carving.faces.size(); ++i) {
-    if (next < tested.size() && tested[next] == i) {
-      ++next;
-    } else if (carving.faces[i].alive) {
-      others.push_back(i);
-    }
-  }
-  const bool few = tested.size() < kFew;
-  const TriangleBvh tree = tree_of(carving, tested), other_tree = few ? tree_of(carving, {}) : tree_of(carving, others);
-  const auto box_of = [&](std::uint32_t f) {
-    Box box;
-    for (const Vec3& p : carving.corners(f)) box.grow(p);
-    return box;
-  };
-  std::vector<std::uint32_t> close;  // when few: instead of the tree
-  if (few)
-    for (const std::uint32_t j : others)
-      if (tree.box().overlaps(box_of(shift + j))) close.push_back(j);
-  struct Found {
-    std::uint32_t face;
-    const char* reason;
-  };
-  constexpr std::size_t kGrain = 64;
-  std::vector<std::vector<Found>> found((tested.size() + kGrain - 1) / kGrain);
-  parallel_for_chunks(tested.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    auto& list = found[begin / kGrain];
-    std::vector<std::uint32_t> near;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t own = tested[i], f = shift + own;
-      const auto c = carving.corners(f);
-      if (!(0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) > least_area))
-        list.push_back({own, "a part of a cut face has no area"});
-      const Box box = box_of(f);
-      tree.overlapping(box, near);
-      for (const std::uint32_t j : near)
-        if (j > i && meet(carving, f, shift + tested[j])) {
-          list.push_back({own, "two parts of cut faces intersect after rounding"});
-          list.push_back({tested[j], "two parts of cut faces intersect after rounding"});
-        }
-      carving.body().bvh().overlapping(box, near);
-      for (const std::uint32_t g : near)
-        if (carving.alive(g) && meet(carving, f, g))
-          list.push_back({own, "a part of a cut face intersects a whole face after rounding"});
-      other_tree.overlapping(box, near);
-      for (std::uint32_t& j : near) j = others[j];
-      for (const std::uint32_t j : few ? close : near)
-        if (meet(carving, f, shift + j)) list.push_back({own, "a part of a cut face intersects a wall after rounding"});
-    }
-  });
-  BadFaces bad;
-  for (const auto& list : found)
-    for (const Found& one : list) {
-      if (bad.faces.empty()) bad.reason = one.reason;
-      bad.faces.push_back(one.face);
-    }
-  std::sort(bad.faces.begin(), bad.faces.end());
-  bad.faces.erase(std::unique(bad.faces.begin(), bad.faces.end()), bad.faces.end());
-  return bad;
+  return BadFaceSearch(carving, tested, least_area).run();
 }
 
 std::string check_balance(const Carving& c) {

@@ -59,12 +59,13 @@ std::vector<Run> runs_between(const std::vector<std::uint32_t>& left_out, std::u
 // Renumbers to the used vertices, in order.
 void take_used_vertices(const Carving& carving, SurfaceMesh& mesh) {
   std::vector<std::uint32_t> used;
-  for (const Triangle& t : mesh.triangles) used.insert(used.end(), t.begin(), t.end());
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
   SparseMap place;
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t)
+      if (place.insert(v, 0)) used.push_back(v);
+  std::sort(used.begin(), used.end());
   for (std::uint32_t i = 0; i < used.size(); ++i)
-    place.insert(used[i], i), mesh.vertices.push_back(carving.position(used[i]));
+    place.set(used[i], i), mesh.vertices.push_back(carving.position(used[i]));
   for (Triangle& t : mesh.triangles) t = {place[t[0]], place[t[1]], place[t[2]]};
 }
 
