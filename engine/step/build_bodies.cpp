@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "engine/fracture/guide.h"
+#include "engine/fragment/cut.h"
+#include "engine/mesh/refit.h"
 #include "engine/mesh/sizing.h"
 #include "engine/mesh/validate.h"
 #include "kernels/core/error.h"
@@ -32,6 +35,36 @@ void remesh_to(SurfaceMesh& mesh, const SizingOptions& sizing, const std::string
   mesh = std::move(out);
 }
 
+// Cuts the scene's notches, exactly, and makes the mesh fit for a solve again. They are surface like any other.
+void cut_notches(SurfaceMesh& mesh, const SceneBody& s, Real edge_length, std::vector<std::string>& messages) {
+  constexpr Real kMaxVolumeChange = 1e-3;
+  for (std::size_t k = 0; k < s.notches.size(); ++k) {
+    const SceneNotch& notch = s.notches[k];
+    const auto refuse = [&](const std::string& reason) {
+      throw InputError(fmt::format("body \"{}\", notch {}: {}", s.name, k + 1, reason));
+    };
+    const CutBody body(mesh);
+    const auto wedge = notch_wedge(notch.guide, body.bvh(), notch.width, edge_length);
+    if (!wedge) refuse("its plane does not enter the body's surface; move its point onto the surface or turn it");
+    const Real before = body.volume();
+    CutOptions o;
+    o.edge_length = edge_length;
+    CutResult c = cut(body, *wedge, o);
+    if (!c.ok) refuse(c.reason);
+    if (c.fragments.size() != 1 || c.dust_volume > 0) refuse("it cuts the body in two; make it shallower");
+    if (!(c.removed_volume > 0)) refuse("it misses the body");
+    const RefitReport report = refit(
+        c.fragments[0],
+        {.edge_length = edge_length, .edge_per_thickness = s.edge_per_thickness, .max_volume_change = kMaxVolumeChange},
+        mesh);
+    if (!report.ok) mesh = std::move(c.fragments[0]);
+    mesh.faces.kind.assign(mesh.triangle_count(), FaceKind::kOriginal);
+    mesh.faces.crack.assign(mesh.triangle_count(), -1);
+    messages.push_back(fmt::format("notch {} takes {:.3g} % of the volume{}", k + 1, 100 * c.removed_volume / before,
+                                   report.ok ? "" : "; remeshing was refused: " + report.reason));
+  }
+}
+
 }  // namespace
 
 BuiltBody build_body(const SceneBody& s, BodyId id) {
@@ -47,6 +80,7 @@ BuiltBody build_body(const SceneBody& s, BodyId id) {
     mesh = make_shape(std::get<ShapeSpec>(s.source), finest);
     remesh_to(mesh, sizing, s.name, built.messages);
   }
+  cut_notches(mesh, s, built.edge_length, built.messages);
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) mesh.faces.source[t] = static_cast<std::int32_t>(t);
   Body& b = built.body;
   b.id = b.parent = id;

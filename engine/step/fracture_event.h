@@ -1,29 +1,16 @@
 // One fracture event (paper algorithm 1, lines 3 to 16, for one body): load, solve, stress, seeds, cracks, cuts,
 // remeshing.
 #pragma once
-#include <span>
 #include <string>
 
-#include "engine/fracture/grow.h"
 #include "engine/fragment/cut.h"
 #include "engine/load/surface_load.h"
+#include "engine/material/scalar_field.h"
+#include "engine/mesh/refit.h"
+#include "engine/step/crack_record.h"
 #include "engine/step/solid.h"
 
 namespace sherd {
-
-struct CrackRecord {
-  std::int32_t id = 0;
-  bool resumed = false;  // grown on from an earlier, stopped crack
-  Vec3 seed;             // m, material space
-  Real stress = 0;       // at the seed, Pa
-  std::string outcome;   // "complete", "arrested", "rejected", "failed", "cut refused"
-  std::string reason;
-  int ladder_level = 0, steps = 0;
-  Real net_section_stress = 0;  // mean tension the rest of the section would bear, Pa; 0: not asked
-  Real area = 0;                // inside the body, m^2
-  Real removed_volume = 0;      // m^3, thickness times area
-  std::size_t fragments = 0;    // the piece it ran through fell into
-};
 
 // Seconds per stage; kept apart from everything that must be the same in every run.
 struct EventSeconds {
@@ -32,47 +19,66 @@ struct EventSeconds {
 
 struct FractureOptions {
   ElasticOptions elastic;
-  Real thickness = 0;             // crack thickness, m
-  Real strength = 0;              // initiation, Pa
-  Real propagation_strength = 0;  // Pa
+  MaterialFields fields;
   Real speed = 0.5;
   bool net_section = true;  // let the ligament of a stopped crack fail, see net_section.h
   int max_cracks = 8;
+  // How often the stress is solved within one event. 1: once, all cracks follow the stress of the body before any.
+  // More: a piece is cut once a round, and the pieces that still bear load are solved anew under their part of it.
+  int rounds = 1;
   std::size_t max_pieces = 200;     // the body may fall into
-  Real min_fragment_volume = 1e-4;  // of the scene body's volume
+  Real min_fragment_volume = 1e-4;  // of the scene body's volume; smaller pieces are dust
+  DustRule dust = DustRule::kDrop;
   std::int32_t first_crack_id = 0;
+  int generation = 0;  // of the body, for the records
 };
 
 struct FragmentShape {
   std::shared_ptr<const SurfaceMesh> clean;  // for stress
   std::shared_ptr<const SurfaceMesh> shown;  // with the notches of the partial cracks; same as clean without any
   std::vector<CrackSheet> partial;
+  Real edge_length = 0;  // of the clean mesh, m
+  bool was_cut = false;  // in the last round: another piece than before
 };
 
-struct FractureResult {
-  // Of the solve:
+// One solve of the stress.
+struct SolveRecord {
+  int round = 0;
   bool solved = false;
   std::string reason;  // when not solved
   KrylovResult krylov;
   std::size_t triangles = 0, panels = 0;
   std::size_t unknowns = 0, galerkin_vertices = 0;  // of the system; vertices with Petrov-Galerkin rows
-  Real incompatibility = 0;  // solver.h
-  bool factored = false;     // preconditioned by triangular factors
-  CrackSeed strongest;    // largest principal stress on the surface
+  Real incompatibility = 0;                         // solver.h
+  bool factored = false;                            // preconditioned by triangular factors
+  Real force = 0;                                   // sizes of all forces together, N
+  Real relief = 0;        // force that inertia balances, of all: 0 for a load that balances by itself
+  CrackSeed strongest;    // largest principal stress on the surface in units of the strength
   std::size_t seeds = 0;  // local maxima above the strength
-  // Of the fracture:
+};
+
+struct FractureResult {
+  std::vector<SolveRecord> solves;    // of the body, then of its pieces; none for guided cracks
   bool changed = false;               // shapes differ from the body as it was
   std::vector<FragmentShape> shapes;  // one: the body with a notch or hole; more: its fragments
   std::vector<CrackRecord> cracks;
-  Real volume_before = 0, volume_after = 0, removed_volume = 0, dust_volume = 0;  // m^3, before remeshing
-  Real remeshed_volume = 0;                                                       // of the shapes after remeshing, m^3
-  std::size_t remesh_refused = 0;
+  // m^3. before - removed - dust + remeshing = after, to rounding; `after` is of the shapes' clean meshes.
+  Real volume_before = 0, removed_volume = 0, dust_volume = 0, remeshing_volume = 0, volume_after = 0;
+  Real notch_volume =
+      0;  // by which the shapes as shown are smaller: notches of stopped cracks, and crumbs they cut off
+  std::vector<RefitReport> refits;  // of the pieces cut; one refused keeps the mesh the cut left
+  std::int32_t next_crack_id = 0;
   EventSeconds seconds;
+
+  bool solved() const { return !solves.empty() && solves[0].solved; }
 };
 
-// contacts: the body's contact forces in material space; omega: angular velocity, material axes. Never throws for
-// geometric or numerical trouble: an unsolved load or a failed crack leaves the body as it was and says why.
-FractureResult fracture_solid(Solid& solid, const MassProperties& clean_mass, const Elastic& material,
-                              std::span<const BodyContact> contacts, const Vec3& omega, const FractureOptions& options);
+// Fills in the volumes of what the shapes are.
+void measure(FractureResult& result);
+
+// `pull`: all that pulls at the body, made for solid.mesh(), of which `mass` must be. Never throws for geometric or
+// numerical trouble: an unsolved load or a failed crack leaves the body as it was and says why.
+FractureResult fracture_solid(Solid& solid, const MassProperties& mass, const Elastic& material,
+                              const SurfaceLoad& pull, const FractureOptions& options);
 
 }  // namespace sherd

@@ -23,7 +23,8 @@ class Simulation {
   Real time() const;  // s
   // True at the start and whenever simulated time has passed the next frame; snapshot() then serves it.
   bool frame_due() const;
-  Frame snapshot();  // of the world, now; consumes the due frame
+  // Of the world, now; consumes the due frame and certifies every mesh it shows, for stats_json().
+  Frame snapshot();
   // The scene's material_view body and its fragments in their material space, translucent; for the frame last served.
   Frame material_snapshot() const;
   View view() const;  // the scene's camera, or one that frames the bodies and where they fall

@@ -1,6 +1,15 @@
 #include "engine/step/solid.h"
 
+#include <algorithm>
+
+#include "engine/mesh/thickness.h"
+
 namespace sherd {
+
+Real Solid::mesh_volume() {
+  if (volume_ == 0) volume_ = signed_volume(*clean_);
+  return volume_;
+}
 
 Real Solid::diagonal() {
   if (diagonal_ == 0) diagonal_ = bounding_box(*clean_).diagonal();
@@ -8,8 +17,18 @@ Real Solid::diagonal() {
 }
 
 Real Solid::thickness() {
-  if (thickness_ == 0) thickness_ = 2 * signed_volume(*clean_) / surface_area(*clean_);
+  if (thickness_ == 0) thickness_ = 2 * mesh_volume() / surface_area(*clean_);
   return thickness_;
+}
+
+Real Solid::crack_edge_length(const Vec3& x) {
+  constexpr Real kPerWall = 0.4, kFinest = 0.25, kReach = 1.5;  // of the wall, of the mesh's edge, edges around x
+  if (walls_.empty()) walls_ = wall_thickness(*clean_).vertex;
+  Real wall = 1e300;
+  for (std::size_t v = 0; v < walls_.size(); ++v)
+    if (distance2(clean_->vertices[v], x) < kReach * kReach * edge_length_ * edge_length_)
+      wall = std::min(wall, walls_[v]);
+  return std::clamp(kPerWall * wall, kFinest * edge_length_, edge_length_);
 }
 
 const std::vector<std::uint32_t>& Solid::twins() {

@@ -24,15 +24,23 @@ struct RootScale {
 // propagation strength, but does not redistribute stress before it goes through.
 class Solid {
  public:
-  Solid(std::shared_ptr<const SurfaceMesh> clean, const RootScale& root) : clean_(std::move(clean)), root_(root) {}
+  // `edge_length`: of the mesh and of cracks in it, m; 0: the root's.
+  Solid(std::shared_ptr<const SurfaceMesh> clean, const RootScale& root, Real edge_length = 0)
+      : clean_(std::move(clean)), root_(root), edge_length_(edge_length > 0 ? edge_length : root.edge_length) {}
 
   const SurfaceMesh& mesh() const { return *clean_; }
   const std::shared_ptr<const SurfaceMesh>& shared_mesh() const { return clean_; }
   const RootScale& root() const { return root_; }
+  Real edge_length() const { return edge_length_; }
   std::vector<CrackSheet> partial;  // cracks that stopped inside
 
-  Real diagonal();   // of the bounding box, m
-  Real thickness();  // 2 volume / area, m: of a plate its thickness, of a ball two thirds of its radius
+  Real mesh_volume();  // m^3
+  Real diagonal();     // of the bounding box, m
+  Real thickness();    // 2 volume / area, m: of a plate its thickness, of a ball two thirds of its radius
+  // Edge length of a crack's sheet that passes near x, m: the mesh's, or shorter where the wall is thin, so that
+  // several rows of it lie between the wall's two sides. With rows as long as the wall is thick a bending crack's first
+  // nodes would already lie in the compressed half, and it would stop before it starts.
+  Real crack_edge_length(const Vec3& x);
   const std::vector<std::uint32_t>& twins();
   const TriangleBvh& bvh();
   const SurfaceRecovery& recovery();
@@ -45,7 +53,9 @@ class Solid {
  private:
   std::shared_ptr<const SurfaceMesh> clean_;
   RootScale root_;
-  Real diagonal_ = 0, thickness_ = 0;
+  Real edge_length_ = 0;
+  Real volume_ = 0, diagonal_ = 0, thickness_ = 0;
+  std::vector<Real> walls_;  // thickness at vertices
   std::vector<std::uint32_t> twins_;
   std::unique_ptr<TriangleBvh> bvh_;
   std::unique_ptr<SurfaceRecovery> recovery_;

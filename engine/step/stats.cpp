@@ -31,19 +31,40 @@ Json step_json(const StepRecord& s) {
   return j;
 }
 
+const char* cause_name(CrackCause cause) {
+  switch (cause) {
+    case CrackCause::kStress:
+      return "stress";
+    case CrackCause::kResumed:
+      return "resumed";
+    case CrackCause::kGuide:
+      return "guide";
+    case CrackCause::kInterior:
+      return "interior";
+  }
+  return "";
+}
+
 Json crack_json(const CrackRecord& c) {
   Json j{{"id", c.id},
-         {"resumed", c.resumed},
+         {"cause", cause_name(c.cause)},
+         {"generation", c.generation},
+         {"round", c.round},
          {"seed", vector_json(c.seed)},
          {"stress", c.stress},
          {"outcome", c.outcome},
          {"ladder_level", c.ladder_level},
          {"steps", c.steps},
          {"area", c.area},
+         {"length", c.length},
          {"removed_volume", c.removed_volume},
+         {"dust_volume", c.dust_volume},
+         {"volume_error", c.volume_error},
          {"fragments", c.fragments}};
   if (c.net_section_stress != 0) j["net_section_stress"] = c.net_section_stress;
   if (!c.reason.empty()) j["reason"] = c.reason;
+  for (std::size_t k = 0; k < c.rungs.reason.size(); ++k)
+    if (!c.rungs.reason[k].empty()) j["rungs"].push_back({{"level", k}, {"reason", c.rungs.reason[k]}});
   return j;
 }
 
@@ -56,6 +77,58 @@ Json mesh_json(const MeshRecord& m) {
           {"warnings", m.warnings}};
 }
 
+Json solve_json(const SolveRecord& r) {
+  Json j{{"ok", r.solved},
+         {"round", r.round},
+         {"triangles", r.triangles},
+         {"unknowns", r.unknowns},
+         {"galerkin_vertices", r.galerkin_vertices},
+         {"load_panels", r.panels},
+         {"force", r.force},
+         {"relief", r.relief},
+         {"iterations", r.krylov.iterations},
+         {"products", r.krylov.products},
+         {"residual", r.krylov.residual},
+         {"factored", r.factored},
+         {"incompatibility", r.incompatibility},
+         {"max_principal", r.strongest.stress.value},
+         {"max_principal_at", vector_json(r.strongest.position)},
+         {"seeds", r.seeds}};
+  if (!r.reason.empty()) j["reason"] = r.reason;
+  return j;
+}
+
+Json refit_json(const RefitReport& r) {
+  Json j{{"ok", r.ok},
+         {"strategy", r.strategy},
+         {"attempts", r.attempts},
+         {"min_angle", r.min_angle},
+         {"volume_change", r.volume_change}};
+  if (!r.reason.empty()) j["reason"] = r.reason;
+  return j;
+}
+
+Json frame_json(const FrameRecord& f) {
+  return {{"frame", f.index},
+          {"time", f.time},
+          {"bodies", f.certificates.size()},
+          {"valid", f.valid},
+          {"certificates", f.certificates},
+          {"volume",
+           {{"shown", f.volume},
+            {"notches", f.notches},
+            {"removed", f.removed},
+            {"dust", f.dust},
+            {"remeshing", f.remeshing},
+            {"error", f.volume_error}}}};
+}
+
+Json certificate_json(const CertificateRecord& c) {
+  Json j{{"body", c.body}, {"body_id", c.body_id}, {"mesh_version", c.mesh_version}};
+  j.update(Json::parse(to_json(c.certificate)));
+  return j;
+}
+
 Json event_json(const EventRecord& e) {
   const FractureResult& r = e.result;
   Json j{{"step", e.step}, {"time", e.time}, {"body", e.body}, {"body_id", e.body_id}};
@@ -65,30 +138,20 @@ Json event_json(const EventRecord& e) {
                              {"force", vector_json(c.force)},
                              {"duration", c.duration},
                              {"patch_radius", c.patch_radius}});
-  j["solve"] = {{"ok", r.solved},
-                {"mesh", e.mesh},
-                {"triangles", r.triangles},
-                {"unknowns", r.unknowns},
-                {"galerkin_vertices", r.galerkin_vertices},
-                {"load_panels", r.panels},
-                {"iterations", r.krylov.iterations},
-                {"products", r.krylov.products},
-                {"residual", r.krylov.residual},
-                {"factored", r.factored},
-                {"incompatibility", r.incompatibility},
-                {"max_principal", r.strongest.stress.value},
-                {"max_principal_at", vector_json(r.strongest.position)},
-                {"seeds", r.seeds}};
-  if (!r.reason.empty()) j["solve"]["reason"] = r.reason;
+  j["applied_loads"] = e.applied_loads;
+  if (!r.solves.empty()) j["solve"] = solve_json(r.solves[0]), j["solve"]["mesh"] = e.mesh;
+  for (std::size_t k = 1; k < r.solves.size(); ++k) j["later_solves"].push_back(solve_json(r.solves[k]));
   j["cracks"] = Json::array();
   for (const CrackRecord& c : r.cracks) j["cracks"].push_back(crack_json(c));
   if (r.changed) {
-    Real area_volume = 0;
-    for (const CrackRecord& c : r.cracks) area_volume += c.removed_volume;
+    Real cracks = 0;
+    for (const CrackRecord& c : r.cracks) cracks += c.removed_volume;
     j["new_bodies"] = e.new_bodies;
-    j["volume"] = {{"before", r.volume_before}, {"after", r.volume_after}, {"removed", r.removed_volume},
-                   {"dust", r.dust_volume},     {"cracks", area_volume},   {"after_remeshing", r.remeshed_volume}};
-    j["remesh_refused"] = r.remesh_refused;
+    j["volume"] = {{"before", r.volume_before},      {"removed", r.removed_volume},     {"cracks", cracks},
+                   {"dust", r.dust_volume},          {"remeshing", r.remeshing_volume}, {"after", r.volume_after},
+                   {"notches_shown", r.notch_volume}};
+    j["refits"] = Json::array();
+    for (const RefitReport& f : r.refits) j["refits"].push_back(refit_json(f));
     j["conservation"] = {{"mass", e.mass_error}, {"momentum", e.momentum_error}, {"angular_momentum", e.angular_error}};
   }
   const EventSeconds& s = r.seconds;
@@ -106,7 +169,7 @@ Json totals_json(const RunRecord& r) {
   }
   for (const EventRecord& e : r.events)
     for (const CrackRecord& c : e.result.cracks) ++outcomes[c.outcome];
-  Json j{{"steps", r.steps.size()},
+  Json j{{"steps", r.steps.empty() ? 0 : r.steps.back().step},
          {"solves", solves},
          {"cracks", cracks},
          {"new_bodies", fragments},
@@ -134,10 +197,18 @@ Json seconds_json(const RunRecord& r) {
           {"grow", t.grow},
           {"cut", t.cut},
           {"remesh", t.remesh},
+          {"certify", r.certify_seconds},
           {"threads", r.threads}};
 }
 
 }  // namespace
+
+std::size_t RunRecord::certificate_of(std::uint32_t body_id, std::uint32_t mesh_version, const std::string& body,
+                                      const SurfaceMesh& mesh) {
+  const auto [at, fresh] = certified_.try_emplace({body_id, mesh_version}, certificates.size());
+  if (fresh) certificates.push_back({body_id, mesh_version, body, certify(mesh)});
+  return at->second;
+}
 
 std::string to_json(const RunRecord& r) {
   Json j;
@@ -149,6 +220,10 @@ std::string to_json(const RunRecord& r) {
   for (const MeshRecord& m : r.meshes) j["meshes"].push_back(mesh_json(m));
   j["events"] = Json::array();
   for (const EventRecord& e : r.events) j["events"].push_back(event_json(e));
+  j["certificates"] = Json::array();
+  for (const CertificateRecord& c : r.certificates) j["certificates"].push_back(certificate_json(c));
+  j["frames"] = Json::array();
+  for (const FrameRecord& f : r.frames) j["frames"].push_back(frame_json(f));
   j["steps"] = Json::array();
   for (const StepRecord& s : r.steps) j["steps"].push_back(step_json(s));
   return j.dump(1) + "\n";

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/mesh/certificate.h"
 #include "engine/mesh/thickness_resolution.h"
 #include "engine/rigid/step.h"
 #include "engine/step/fracture_event.h"
@@ -39,9 +40,27 @@ struct EventRecord {
   std::string body;
   std::uint32_t body_id = 0;
   std::vector<BodyContact> contacts;
-  FractureResult result;  // shapes are emptied
+  std::size_t applied_loads = 0;  // of the scene that acted
+  FractureResult result;          // shapes are emptied
   std::vector<std::uint32_t> new_bodies;
   Real mass_error = 0, momentum_error = 0, angular_error = 0;  // relative, fragments against the parent
+};
+
+// Of one mesh that was shown; made once.
+struct CertificateRecord {
+  std::uint32_t body_id = 0, mesh_version = 0;
+  std::string body;
+  MeshCertificate certificate;
+};
+
+// Of all meshes of a frame, and where the volume of the start is: before - removed - dust + remeshing = volume +
+// notches but for volume_error, relative. All summed over the run, m^3.
+struct FrameRecord {
+  std::size_t index = 0;
+  Real time = 0;
+  std::vector<std::size_t> certificates;  // indices into RunRecord::certificates, one a body
+  std::size_t valid = 0;                  // bodies whose certificate is ok
+  Real volume = 0, removed = 0, dust = 0, remeshing = 0, notches = 0, volume_error = 0;
 };
 
 struct RunRecord {
@@ -50,8 +69,18 @@ struct RunRecord {
   std::vector<MeshRecord> meshes;
   std::vector<StepRecord> steps;
   std::vector<EventRecord> events;
-  Real prepare_seconds = 0;
+  std::vector<CertificateRecord> certificates;
+  std::vector<FrameRecord> frames;
+  Real start_volume = 0;  // of all bodies, m^3
+  Real prepare_seconds = 0, certify_seconds = 0;
   int threads = 0;
+
+  // Index of the mesh's certificate, made when it is asked for first.
+  std::size_t certificate_of(std::uint32_t body_id, std::uint32_t mesh_version, const std::string& body,
+                             const SurfaceMesh& mesh);
+
+ private:
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> certified_;
 };
 
 std::string to_json(const RunRecord& record);

@@ -2,32 +2,21 @@
 #include "engine/step/simulation.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "engine/body/mass.h"
 #include "engine/mesh/thickness_resolution.h"
 #include "engine/mesh/validate.h"
 #include "kernels/core/error.h"
+#include "tests/step/run_scene.h"
 
 namespace sherd {
 namespace {
 
 namespace fs = std::filesystem;
-
-Scene scene_of(const std::string& text) {
-  static int count = 0;
-  const fs::path path = fs::temp_directory_path() /
-                        ("sherd_simulation_test_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".toml");
-  std::ofstream(path) << text;
-  const Scene scene = load_scene(path);
-  fs::remove(path);
-  return scene;
-}
 
 // A plaster bar that lands on one end: bending breaks it.
 const std::string kBar = R"(
@@ -44,31 +33,6 @@ rotation = {axis = [0, 0, 1], angle = 12}
 velocity = [0, -5, 0]
 material = {preset = "plaster", crack_thickness = 1e-4}
 )";
-
-struct RunResult {
-  std::vector<Frame> frames;
-  nlohmann::json stats;
-};
-
-void drop_seconds(nlohmann::json& j) {
-  if (j.is_object()) j.erase("seconds");
-  for (auto& item : j)
-    if (item.is_structured()) drop_seconds(item);
-}
-
-RunResult run_scene(const std::string& text, int threads) {
-  Simulation simulation(scene_of(text), {.threads = threads});
-  RunResult r;
-  for (;;) {
-    if (simulation.frame_due()) r.frames.push_back(simulation.snapshot());
-    if (simulation.done()) break;
-    simulation.step();
-  }
-  r.stats = nlohmann::json::parse(simulation.stats_json());
-  drop_seconds(r.stats);
-  r.stats.erase("scene");  // the temporary file's name
-  return r;
-}
 
 const RunResult& bar_run() {
   static const RunResult r = run_scene(kBar, 2);
@@ -91,18 +55,50 @@ TEST(Simulation, FragmentsLoseThicknessTimesAreaOfVolumeAndNoMassOrMomentum) {
     if (!event.contains("volume") || event["new_bodies"].empty()) continue;
     ++broken;
     const auto& v = event["volume"];
-    Real area = 0;
-    for (const auto& crack : event["cracks"])
+    Real area = 0, removed = 0, dust = 0;
+    for (const auto& crack : event["cracks"]) {
+      removed += crack["removed_volume"].get<Real>(), dust += crack["dust_volume"].get<Real>();
       if (crack["outcome"] == "complete") area += crack["area"].get<Real>();
-    const Real before = v["before"], after = v["after"], removed = before - after, dust = v["dust"];
+      EXPECT_LT(crack["volume_error"].get<Real>(), 1e-12);
+      const std::string body = event["body"];  // "bar", its fragments append _0, _1, ...
+      EXPECT_EQ(crack["generation"].get<std::ptrdiff_t>(), std::count(body.begin(), body.end(), '_'));
+    }
     EXPECT_GT(area, 0);
     // Flat cracks across a bar: slab volume is thickness times area to the accuracy of area_inside (1 %).
-    EXPECT_NEAR(removed - dust, 1e-4 * area, 0.01 * 1e-4 * area + 1e-9 * before);
-    EXPECT_NEAR(v["after_remeshing"], before - 1e-4 * area, 0.01 * before);
+    EXPECT_NEAR(removed, 1e-4 * area, 0.01 * 1e-4 * area);
+    EXPECT_NEAR(v["removed"], removed, 1e-12 * removed);
+    EXPECT_NEAR(v["dust"], dust, 1e-12 * removed);
+    const Real before = v["before"], remeshing = v["remeshing"];
+    EXPECT_NEAR(v["after"], before - removed - dust + remeshing, 1e-12 * before);
+    EXPECT_LT(std::abs(remeshing), 0.01 * before);
     for (const char* key : {"mass", "momentum", "angular_momentum"})
       EXPECT_LT(event["conservation"][key].get<Real>(), 1e-9);
   }
   EXPECT_GT(broken, 0);
+}
+
+TEST(Simulation, EveryFrameIsCertifiedAndAccountsForAllVolume) {
+  const nlohmann::json& stats = bar_run().stats;
+  ASSERT_EQ(stats["frames"].size(), bar_run().frames.size());
+  std::set<std::pair<std::uint32_t, std::uint32_t>> shown;
+  for (std::size_t i = 0; i < stats["frames"].size(); ++i) {
+    const auto& frame = stats["frames"][i];
+    EXPECT_EQ(frame["bodies"], bar_run().frames[i].bodies.size());
+    EXPECT_EQ(frame["valid"], frame["bodies"]);
+    EXPECT_LT(frame["volume"]["error"].get<Real>(), 1e-12);
+    Real volume = 0;
+    for (std::size_t k = 0; k < bar_run().frames[i].bodies.size(); ++k) {
+      const FrameBody& body = bar_run().frames[i].bodies[k];
+      const auto& c = stats["certificates"][frame["certificates"][k].get<std::size_t>()];
+      EXPECT_EQ(c["body_id"], body.id);
+      EXPECT_EQ(c["triangles"], body.mesh->triangle_count());
+      EXPECT_TRUE(c["closed"] && c["manifold"] && c["oriented"] && c["embedded"]);
+      volume += signed_volume(*body.mesh);
+      shown.insert({body.id, body.mesh_version});
+    }
+    EXPECT_NEAR(frame["volume"]["shown"], volume, 1e-12 * volume);
+  }
+  EXPECT_EQ(stats["certificates"].size(), shown.size());  // each mesh once
 }
 
 TEST(Simulation, SameFramesAndStatisticsForAnyNumberOfThreads) {

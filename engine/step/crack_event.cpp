@@ -1,0 +1,321 @@
+#include "engine/step/crack_event.h"
+
+#include <algorithm>
+
+#include "engine/fracture/net_section.h"
+#include "engine/fracture/thicken.h"
+#include "engine/step/refit_piece.h"
+#include "engine/step/stopwatch.h"
+#include "kernels/core/fault.h"
+
+namespace sherd {
+namespace {
+
+constexpr int kTriesPerCrack = 4;
+
+Real node_distance2(const CrackSheet& sheet, const Vec3& x) {
+  Real best = 1e300;
+  for (std::size_t i = 0; i < sheet.position.size(); ++i) best = std::min(best, distance2(sheet.position[i], x));
+  return best;
+}
+
+bool touches(const CrackSheet& sheet, const TriangleBvh& body) {
+  for (std::size_t i = 0; i < sheet.position.size(); ++i)
+    if (sheet.state[i] != NodeState::kExited && body.inside(sheet.position[i])) return true;
+  return false;
+}
+
+// Runs `work`, which changes nothing before it has succeeded. False with the reason when it threw: a broken invariant,
+// an input no sheet can be made of, memory; the run goes on without this crack.
+template <class Work>
+bool guarded(std::string& reason, const Work& work) {
+  try {
+    work();
+    return true;
+  } catch (const std::exception& e) {
+    reason = e.what();
+    return false;
+  }
+}
+
+// Mean strength along the stopped front, what the ligament's mean tension is to be compared with.
+Real front_strength(const CrackSheet& sheet, const ScalarField& strength) {
+  Real sum = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < sheet.position.size(); ++i)
+    if (sheet.state[i] == NodeState::kArrested || sheet.state[i] == NodeState::kBlocked)
+      sum += strength.at(sheet.position[i]), ++count;
+  return count > 0 ? sum / static_cast<Real>(count) : strength.upper();
+}
+
+}  // namespace
+
+CrackEvent::CrackEvent(Solid& solid, const FractureOptions& options, FractureResult& result)
+    : solid_(solid), options_(options), result_(result), next_id_(options.first_crack_id) {
+  pieces_.push_back({solid.shared_mesh(), solid.partial, false, nullptr});
+}
+
+GrowthOptions CrackEvent::growth_options(Piece& piece, const CrackRecord& record, CutResult& accepted) {
+  GrowthOptions o;
+  // A guided crack asks no stress, so no wall is too thin for it.
+  o.edge_length = record.cause == CrackCause::kGuide ? solid_.edge_length() : solid_.crack_edge_length(record.seed);
+  o.propagation_strength = options_.fields.propagation_strength->upper();
+  o.propagation_field = options_.fields.propagation_strength.get();
+  o.thickness = options_.fields.crack_thickness->upper();
+  o.thickness_field = options_.fields.crack_thickness.get();
+  o.speed = options_.speed;
+  o.accept = [this, &piece, &accepted, id = record.id](const CrackSheet& sheet) {
+    accepted = cut_piece(piece.cut_body(), sheet, id);
+    return accepted.ok ? std::string() : accepted.reason;
+  };
+  return o;
+}
+
+CutResult CrackEvent::cut_piece(const CutBody& body, const CrackSheet& sheet, std::int32_t crack) {
+  const Stopwatch watch(result_.seconds.cut);
+  CutResult refused;
+  SlabOptions s;
+  s.thickness = options_.fields.crack_thickness->upper(), s.field = options_.fields.crack_thickness.get();
+  s.crack = crack;
+  const auto slab = thicken(sheet, s, refused.reason);
+  if (!slab) return refused;
+  CutOptions o;
+  o.edge_length = solid_.edge_length();
+  o.seed = static_cast<std::uint64_t>(crack) + 1;
+  o.min_fragment_volume = options_.min_fragment_volume * solid_.root().volume / body.volume();
+  o.dust = options_.dust;
+  o.slab_checked = true;
+  CutResult c = cut(body, *slab, o);
+  if (!c.ok) c.reason = "the cut was refused: " + c.reason;
+  return c;
+}
+
+CrackEvent::Grown CrackEvent::grow(Piece& piece, CrackRecord& record, const Grow& grow) {
+  Grown grown;
+  const Real cutting = result_.seconds.cut;
+  const bool went = guarded(record.reason, [&] {
+    const Stopwatch watch(result_.seconds.grow);
+    fault_point("event.grow");
+    grown.result = grow(piece.tree(), growth_options(piece, record, grown.cut));
+  });
+  result_.seconds.grow -= result_.seconds.cut - cutting;
+  if (!went) grown.result.outcome = GrowthOutcome::kFailed, grown.result.reason = record.reason;
+  return grown;
+}
+
+void CrackEvent::break_ligament(Piece& piece, const CrackField& field, Grown& grown, CrackRecord& record) {
+  if (!options_.net_section || grown.result.outcome != GrowthOutcome::kArrested) return;
+  const Real cutting = result_.seconds.cut;
+  CutResult through;
+  NetSection net;
+  std::string reason;
+  const bool went = guarded(reason, [&] {
+    const Stopwatch watch(result_.seconds.grow);
+    net = net_section(piece.tree(), field, grown.result.sheet, growth_options(piece, record, through));
+  });
+  result_.seconds.grow -= result_.seconds.cut - cutting;
+  if (!went || !net.complete) return;
+  record.net_section_stress = net.stress;
+  if (net.stress < front_strength(grown.result.sheet, *options_.fields.propagation_strength)) return;
+  const GrowthResult& stopped = grown.result;
+  net.through.ladder_level = std::max(net.through.ladder_level, stopped.ladder_level);
+  net.through.steps += stopped.steps;
+  if (net.through.reason.empty()) net.through.reason = stopped.reason;
+  for (std::size_t k = 0; k < stopped.rungs.reason.size(); ++k)
+    if (net.through.rungs.reason[k].empty()) net.through.rungs.reason[k] = stopped.rungs.reason[k];
+  grown = {std::move(net.through), std::move(through)};
+}
+
+bool CrackEvent::commit(std::size_t index, Grown&& grown, CrackRecord& record) {
+  GrowthResult& g = grown.result;
+  CutResult& c = grown.cut;
+  record.generation = options_.generation;
+  record.ladder_level = g.ladder_level, record.steps = g.steps, record.area = g.area, record.length = g.length;
+  record.reason = g.reason, record.rungs = g.rungs;
+  if (g.outcome == GrowthOutcome::kRejectedSeed || g.outcome == GrowthOutcome::kFailed) {
+    record.outcome = g.outcome == GrowthOutcome::kFailed ? "failed" : "rejected";
+    return false;
+  }
+  const bool arrested = g.outcome == GrowthOutcome::kArrested;
+  record.outcome = arrested ? "arrested" : c.separated ? "complete" : "pierced";
+  record.fragments = c.fragments.size();
+  const Real before = pieces_[index].cut_body().volume();
+  Real after = 0;
+  for (const SurfaceMesh& mesh : c.fragments) after += signed_volume(mesh);
+  record.volume_error = std::abs(before - after - c.removed_volume - c.dust_volume) / before;
+  const bool stays = arrested && c.fragments.size() == 1;  // a notch, see finished()
+  const bool committed = guarded(record.reason, [&] {
+    CrackSheet sheet = g.sheet;
+    grown_.reserve(grown_.size() + 1);
+    if (stays)
+      pieces_[index].partial.push_back(std::move(g.sheet));
+    else
+      replace(index, std::move(c), kNoSheet);
+    grown_.push_back(std::move(sheet));
+  });
+  if (!committed) {
+    record.outcome = "failed", record.fragments = 0;
+    return false;
+  }
+  result_.changed = true;
+  if (!stays) record.removed_volume = c.removed_volume, record.dust_volume = c.dust_volume;
+  return !stays;
+}
+
+// All that can throw comes before the first change.
+void CrackEvent::replace(std::size_t index, CutResult&& c, std::size_t left_out) {
+  std::vector<Piece> all;
+  all.reserve(pieces_.size() + c.fragments.size());
+  std::vector<Piece> parts;
+  fault_point("event.replace");
+  for (SurfaceMesh& mesh : c.fragments) {
+    Piece part{std::make_shared<SurfaceMesh>(std::move(mesh)), {}, true, nullptr};
+    const std::vector<CrackSheet>& sheets = pieces_[index].partial;
+    for (std::size_t k = 0; k < sheets.size(); ++k)
+      if (k != left_out && touches(sheets[k], part.tree())) part.partial.push_back(sheets[k]);
+    parts.push_back(std::move(part));
+  }
+  fault_point("event.commit");
+  for (std::size_t i = 0; i < pieces_.size(); ++i)
+    if (i != index)
+      all.push_back(std::move(pieces_[i]));
+    else
+      std::move(parts.begin(), parts.end(), std::back_inserter(all));
+  pieces_.swap(all);
+  result_.removed_volume += c.removed_volume, result_.dust_volume += c.dust_volume;
+}
+
+std::size_t CrackEvent::piece_at(const Vec3& x, Real reach) {
+  std::size_t best = pieces_.size();
+  Real least = reach * reach;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const Real d2 = pieces_[i].tree().closest(x, reach).distance2;
+    if (d2 < least) least = d2, best = i;
+  }
+  return best;
+}
+
+void CrackEvent::resume(const CrackField& field, bool ligaments) {
+  // Sheets move between pieces while cracks go through, so each is taken out first and put back if it did not grow.
+  std::vector<CrackSheet> waiting = std::move(pieces_[0].partial);
+  pieces_[0].partial.clear();
+  for (CrackSheet& sheet : waiting) {
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      if (!touches(sheet, pieces_[i].tree())) continue;
+      CrackRecord record;
+      record.id = next_id_, record.cause = CrackCause::kResumed, record.seed = sheet.position[0],
+      record.stress = sheet.reference_stress;
+      Grown grown = grow(pieces_[i], record, [&](const TriangleBvh& body, const GrowthOptions& options) {
+        return resume_crack(body, field, sheet, options);
+      });
+      if (ligaments) break_ligament(pieces_[i], field, grown, record);
+      const GrowthOutcome outcome = grown.result.outcome;
+      const bool grew =
+          outcome == GrowthOutcome::kComplete ||
+          (outcome == GrowthOutcome::kArrested && grown.result.sheet.position.size() > sheet.position.size());
+      if (!grew) {
+        pieces_[i].partial.push_back(sheet);
+        continue;
+      }
+      ++next_id_;
+      const bool split = commit(i, std::move(grown), record);
+      if (record.outcome == "failed") pieces_[i].partial.push_back(sheet);
+      result_.cracks.push_back(std::move(record));
+      if (split) break;
+    }
+  }
+}
+
+bool CrackEvent::may_start(const CrackSeed& seed) const {
+  const Real apart = 2 * solid_.edge_length();
+  const auto close_to = [&](const CrackSheet& s) { return node_distance2(s, seed.position) < apart * apart; };
+  return std::none_of(grown_.begin(), grown_.end(), close_to) &&
+         std::none_of(solid_.partial.begin(), solid_.partial.end(), close_to);
+}
+
+void CrackEvent::start(const CrackField& field, std::span<const CrackSeed> seeds, CrackCause cause) {
+  for (const CrackSeed& seed : seeds) {
+    // A seed that no sheet can start from is soon told from one that can, so it counts less.
+    if (cracks_ >= options_.max_cracks || tried_ >= kTriesPerCrack * options_.max_cracks) return;
+    if (pieces_.size() >= options_.max_pieces) return;
+    if (!may_start(seed)) continue;
+    const std::size_t index = piece_at(seed.position, 0.1 * solid_.edge_length());
+    if (index == pieces_.size()) continue;
+    // The stress in a piece that a crack has just made is another one; a later round asks for it.
+    if (options_.rounds > 1 && pieces_[index].was_cut) continue;
+    ++tried_;
+    CrackRecord record;
+    record.id = next_id_++, record.cause = cause, record.seed = seed.position, record.stress = seed.stress.value;
+    Grown grown = grow(pieces_[index], record, [&](const TriangleBvh& body, const GrowthOptions& options) {
+      return grow_crack(body, field, seed, options);
+    });
+    // The depth at which a guided crack stops is meant.
+    if (cause != CrackCause::kGuide) break_ligament(pieces_[index], field, grown, record);
+    commit(index, std::move(grown), record);
+    cracks_ += record.outcome != "rejected";
+    result_.cracks.push_back(std::move(record));
+  }
+}
+
+bool CrackEvent::split_by(std::size_t index, std::size_t k) {
+  bool split = false;
+  std::string reason;
+  guarded(reason, [&] {
+    CutResult c = cut_piece(pieces_[index].cut_body(), pieces_[index].partial[k], next_id_);
+    if (!c.ok || c.fragments.size() < 2) return;
+    replace(index, std::move(c), k);
+    split = true;
+  });
+  if (split) ++next_id_;
+  return split;
+}
+
+// A stopped crack whose neighbours went through may by now separate a piece on its own.
+void CrackEvent::split_by_partials() {
+  for (std::size_t i = 0; i < pieces_.size(); ++i)
+    for (std::size_t k = 0; k < pieces_[i].partial.size() && pieces_[i].was_cut; ++k) {
+      if (pieces_.size() >= options_.max_pieces) return;
+      if (split_by(i, k)) k = static_cast<std::size_t>(-1);  // the piece at i is another one now
+    }
+}
+
+void CrackEvent::cut_notches(FragmentShape& shape) {
+  std::string reason;
+  for (const CrackSheet& sheet : shape.partial)
+    guarded(reason, [&] {
+      CutResult c = cut_piece(CutBody(*shape.shown), sheet, next_id_);
+      if (c.ok && c.fragments.size() == 1) shape.shown = std::make_shared<SurfaceMesh>(std::move(c.fragments[0]));
+    });
+}
+
+FragmentShape CrackEvent::finished(Piece& piece) {
+  FragmentShape shape;
+  shape.clean = piece.mesh, shape.partial = piece.partial, shape.was_cut = piece.was_cut;
+  shape.edge_length = solid_.edge_length();
+  if (piece.was_cut) {
+    shape.edge_length = piece_edge_length(*piece.mesh, solid_.root());
+    const Stopwatch watch(result_.seconds.remesh);
+    SurfaceMesh out;
+    RefitReport report;
+    if (!guarded(report.reason, [&] { report = refit_piece(*piece.mesh, solid_.root(), out); })) report.ok = false;
+    if (report.ok) shape.clean = std::make_shared<SurfaceMesh>(std::move(out));
+    result_.refits.push_back(std::move(report));
+  }
+  shape.shown = shape.clean;
+  cut_notches(shape);
+  return shape;
+}
+
+void CrackEvent::finish() {
+  if (result_.changed) {
+    split_by_partials();
+    for (Piece& p : pieces_) {
+      result_.shapes.push_back(finished(p));
+      const FragmentShape& shape = result_.shapes.back();
+      if (shape.clean != p.mesh) result_.remeshing_volume += signed_volume(*shape.clean) - signed_volume(*p.mesh);
+    }
+  }
+  result_.next_crack_id = next_id_;
+}
+
+}  // namespace sherd

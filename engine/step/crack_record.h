@@ -1,0 +1,35 @@
+// What became of one crack, for stats.json.
+#pragma once
+#include <string>
+
+#include "engine/fracture/grow.h"
+
+namespace sherd {
+
+// Why a crack was tried.
+enum class CrackCause { kStress, kResumed, kGuide, kInterior };
+
+struct CrackRecord {
+  std::int32_t id = 0;
+  CrackCause cause = CrackCause::kStress;
+  int generation = 0;  // of the body it ran through: 0 for a body of the scene
+  int round = 0;       // of the event, see FractureOptions::rounds
+  Vec3 seed;           // m, material space
+  Real stress = 0;     // at the seed, Pa
+  // "complete": through; "pierced": through, yet nothing came apart (a handle was cut); "arrested": stopped inside;
+  // "rejected": no sheet could start there; "failed": no rung of the ladder gave a valid sheet and cut, or an error;
+  // the body is bit-identical after the last two.
+  std::string outcome, reason;
+  int ladder_level = 0, steps = 0;
+  Rungs rungs;                  // why each failed
+  Real net_section_stress = 0;  // mean tension the rest of the section would bear, Pa; 0: not asked
+  Real area = 0;                // inside the body, m^2
+  Real length = 0;              // of its trace on the surface, m
+  Real removed_volume = 0;      // from the body, m^3; 0 for a stopped crack, which is kept as a sheet
+  Real dust_volume = 0;         // of pieces too small to keep that it cut off, m^3
+  // |piece before - pieces after - removed - dust| over the piece before; the exact cut keeps it at rounding.
+  Real volume_error = 0;
+  std::size_t fragments = 0;  // the piece it ran through fell into
+};
+
+}  // namespace sherd

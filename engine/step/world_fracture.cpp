@@ -1,0 +1,310 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+#include "engine/step/elastic_settings.h"
+#include "engine/step/guided_event.h"
+#include "engine/step/inherit.h"
+#include "engine/step/stopwatch.h"
+#include "engine/step/world.h"
+#include "kernels/core/error.h"
+
+namespace sherd {
+namespace {
+
+// A load this far below what a body can bear cannot break it; its stress is not solved. Estimates, not bounds: a wall
+// of thickness T = 2 V/A bears a bending force of order strength * T^2 (plates: 6 M / T^2 with M of order F / 2 pi),
+// and no tension exceeds the mean contact pressure by much away from it.
+constexpr Real kBendingShare = 0.05, kPressureShare = 0.5;
+// The stress a newton has caused on this mesh before, times this, stands for the stress it may cause elsewhere.
+constexpr Real kLearnedShare = 4;
+// A mesh that the solver failed on so often stays whole until something changes it.
+constexpr int kMaxFailedSolves = 2;
+
+// Meshes' dense operators kept at a time, bytes.
+constexpr std::size_t kOperatorBudget = std::size_t{3} << 30;
+
+}  // namespace
+
+ContactLoadOptions World::load_options() const {
+  ContactLoadOptions o;
+  o.time_step = scene.time_step;
+  o.duration = scene.contact.duration.value_or(0);
+  o.min_duration = scene.contact.min_duration;
+  o.patch_radius = scene.contact.patch_radius.value_or(0);
+  o.min_patch_radius = scene.contact.min_patch_radius;
+  return o;
+}
+
+Real World::curvature_at(BodyId id, const Vec3& world_point) {
+  const std::size_t i = index_of(id);
+  Solid& solid = *companions[i].solid;
+  return curvature_radius(solid.mesh(), solid.twins(), solid.bvh(), to_material(bodies[i], world_point));
+}
+
+std::vector<BodyContact> World::loads_on(std::size_t i) {
+  std::vector<BodyContact> loads;
+  const Body& body = bodies[i];
+  for (const Contact& c : contacts) {
+    if ((c.a != body.id && c.b != body.id) || norm2(c.impulse) == 0) continue;
+    const BodyId other = c.a == body.id ? c.b : c.a;
+    Real radius = curvature_at(body.id, c.point);
+    if (other != kGround) radius = 1 / (1 / radius + 1 / curvature_at(other, c.point));
+    loads.push_back(body_contact(body, other == kGround ? nullptr : &bodies[index_of(other)], c, radius,
+                                 companions[i].solid->diagonal(), load_options()));
+  }
+  return loads;
+}
+
+std::string World::cannot_break(std::size_t i) const {
+  const Body& body = bodies[i];
+  if (!scene.fracture.enabled) return "fracture is off";
+  if (body.fixed || !body.breakable) return "unbreakable";
+  if (body.generation >= scene.fracture.max_generation) return "last generation";
+  if (bodies.size() >= static_cast<std::size_t>(scene.fracture.max_fragments)) return "fragment limit";
+  if (companions[i].solid->mesh().triangle_count() < 20) return "too small";
+  if (companions[i].failed_solves >= kMaxFailedSolves) return "its stress could not be solved";
+  return {};
+}
+
+std::string World::too_light(std::size_t i, Real force, Real pressure) const {
+  const MaterialFields& fields = roots[companions[i].scene_body].fields;
+  const Real strength = fields.strength->lower(), wall = companions[i].solid->thickness();
+  if (force < kBendingShare * strength * wall * wall && pressure < kPressureShare * strength)
+    return "load below strength";
+  const Real needed =
+      companions[i].solid->partial.empty() ? 1 : fields.propagation_strength->lower() / fields.strength->upper();
+  if (companions[i].ratio_per_force > 0 && kLearnedShare * companions[i].ratio_per_force * force < needed)
+    return "load below what earlier ones bore";
+  return {};
+}
+
+std::vector<bool> World::acting_loads(std::size_t i) const {
+  std::vector<bool> acting;
+  for (const HeldLoad& l : companions[i].loads) acting.push_back(l.load.acts(time()));
+  return acting;
+}
+
+std::string World::reason_to_skip(std::size_t i, std::vector<BodyContact>& loads) {
+  // Cheapest questions first: most bodies of a heap only rest.
+  Real impulse = 0, largest = 0;
+  for (const Contact& c : contacts)
+    if (c.a == bodies[i].id || c.b == bodies[i].id)
+      impulse += norm(c.impulse), largest = std::max(largest, norm(c.impulse));
+  const std::vector<bool> acting = acting_loads(i);
+  const bool held = std::find(acting.begin(), acting.end(), true) != acting.end();
+  if (impulse == 0 && !held) return "no contact";
+  if (std::string reason = cannot_break(i); !reason.empty()) return reason;
+  if (held && acting != companions[i].solved_loads) {
+    loads = loads_on(i);
+    return {};
+  }
+  if (impulse == 0) return "load borne before";
+  const ContactLoadOptions options = load_options();
+  const auto disc = [](Real radius) { return std::numbers::pi * radius * radius; };
+  const Real shortest = shortest_duration(options),
+             area = disc(smallest_patch(companions[i].solid->diagonal(), options));
+  if (std::string reason = too_light(i, impulse / shortest, largest / shortest / area); !reason.empty()) return reason;
+  loads = loads_on(i);
+  Real force = 0, pressure = 0;
+  for (const BodyContact& c : loads)
+    force += norm(c.force), pressure = std::max(pressure, norm(c.force) / disc(c.patch_radius));
+  return too_light(i, force, pressure);
+}
+
+FractureOptions World::fracture_options(std::size_t i) const {
+  FractureOptions o;
+  o.elastic = elastic_options(scene.solver);
+  o.fields = roots[companions[i].scene_body].fields;
+  o.speed = scene.fracture.speed;
+  o.net_section = scene.fracture.net_section;
+  o.max_cracks = scene.fracture.max_cracks;
+  o.rounds = scene.fracture.rounds;
+  o.max_pieces = static_cast<std::size_t>(std::max(0, scene.fracture.max_fragments)) + 1;
+  o.max_pieces -= std::min(o.max_pieces, bodies.size());
+  o.min_fragment_volume = scene.fracture.min_fragment_volume;
+  o.dust = scene.fracture.dust == SceneDust::kKeep ? DustRule::kKeep : DustRule::kDrop;
+  o.first_crack_id = next_crack;
+  o.generation = bodies[i].generation;
+  return o;
+}
+
+void World::apply_shapes(std::size_t i, FractureResult& result, EventRecord& event) {
+  const Body parent = bodies[i];
+  const Companion companion = companions[i];
+  const bool same_body = result.shapes.size() == 1;
+  std::vector<Body> fragments;
+  std::vector<Companion> solids;
+  for (std::size_t k = 0; k < result.shapes.size(); ++k) {
+    FragmentShape& shape = result.shapes[k];
+    Body b = parent;
+    b.mesh = shape.shown;
+    if (same_body) {
+      ++b.mesh_version;
+    } else {
+      b.id = BodyId{next_id++}, b.parent = parent.id, b.mesh_version = 0, ++b.generation;
+      b.name = fmt::format("{}_{}", parent.name, k);
+      event.new_bodies.push_back(b.id.value);
+    }
+    fragments.push_back(std::move(b));
+    const bool clean_kept = shape.clean == companion.solid->shared_mesh();
+    auto solid =
+        clean_kept ? companion.solid : std::make_shared<Solid>(shape.clean, companion.solid->root(), shape.edge_length);
+    solid->partial = std::move(shape.partial);
+    solids.push_back({.solid = std::move(solid),
+                      .scene_body = companion.scene_body,
+                      .loads = same_body ? companion.loads : std::vector<HeldLoad>{},
+                      .solved_loads = clean_kept ? companion.solved_loads : std::vector<bool>{},
+                      .mesh = clean_kept ? companion.mesh : kUnrecorded,
+                      .last_solve = companion.last_solve,
+                      .failed_solves = clean_kept ? companion.failed_solves : 0,
+                      .ratio_per_force = clean_kept ? companion.ratio_per_force : 0});
+  }
+  inherit_motion(parent, fragments);
+  const Momenta before = momenta(parent);
+  Momenta after;
+  for (const Body& f : fragments) after += momenta(f);
+  // Relative to the sizes of the terms that cancel, so that a body at rest does not divide by zero.
+  const Real size = start_box.diagonal(), speed = norm(parent.velocity) + size * norm(parent.angular_velocity) + 1e-12;
+  event.mass_error = std::abs(after.mass - before.mass) / before.mass;
+  event.momentum_error = norm(after.linear - before.linear) / (before.mass * speed);
+  event.angular_error =
+      norm(after.angular - before.angular) / (before.mass * speed * (size + norm(parent.pose.position)));
+  bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(i));
+  companions.erase(companions.begin() + static_cast<std::ptrdiff_t>(i));
+  bodies.insert(bodies.begin() + static_cast<std::ptrdiff_t>(i), fragments.begin(), fragments.end());
+  companions.insert(companions.begin() + static_cast<std::ptrdiff_t>(i), solids.begin(), solids.end());
+}
+
+void World::fracture(std::size_t i, std::vector<BodyContact>&& loads, StepRecord& step) {
+  const Body& body = bodies[i];
+  Companion& companion = companions[i];
+  Solid& solid = *companion.solid;
+  companion.last_solve = steps;
+  // Mass of the clean mesh, the one the load must balance on; its density makes up for the notches of the shown one.
+  MassProperties mass = mass_properties(solid.mesh(), 1);
+  const Real density = body.mass.mass / mass.volume;
+  mass.mass = body.mass.mass, mass.inertia *= density;
+  SurfaceLoad pull;
+  pull.patches = contact_patches(solid.mesh(), loads, solid.twins(), solid.bvh());
+  pull.omega = rotate(conjugate(body.pose.orientation), body.angular_velocity);
+  companion.solved_loads = acting_loads(i);
+  for (const HeldLoad& l : companion.loads)
+    if (l.load.acts(time())) pull.applied.push_back(l.traction);
+  const Elastic material{shear_modulus(body.material), body.material.poisson};
+  EventRecord event;
+  record_mesh(i);
+  event.mesh = companion.mesh, event.applied_loads = pull.applied.size();
+  const FractureOptions options = fracture_options(i);
+  event.result = fracture_solid(solid, mass, material, pull, options);
+  event.contacts = std::move(loads);
+  const SolveRecord& solve = event.result.solves[0];
+  if (solve.solved)
+    companion.ratio_per_force =
+        std::max(companion.ratio_per_force,
+                 solve.strongest.stress.value / solve.force / options.fields.strength->at(solve.strongest.position));
+  else
+    ++companion.failed_solves;
+  take(i, std::move(event), step);
+}
+
+void World::take(std::size_t i, EventRecord&& event, StepRecord& step) {
+  event.step = steps, event.time = time(), event.body = bodies[i].name, event.body_id = bodies[i].id.value;
+  FractureResult& result = event.result;
+  next_crack = result.next_crack_id;
+  step.solves += result.solves.size(), step.cracks += result.cracks.size();
+  for (const SolveRecord& s : result.solves) step.solver_iterations += static_cast<std::size_t>(s.krylov.iterations);
+  report(event);
+  if (result.changed) apply_shapes(i, result, event);
+  step.fragments += event.new_bodies.size();
+  result.shapes.clear();
+  record.events.push_back(std::move(event));
+}
+
+void World::report(const EventRecord& event) {
+  const FractureResult& r = event.result;
+  const std::string at = fmt::format("{:.3f} s: {}", event.time, event.body);
+  const std::string why = r.solves.empty()
+                              ? "along its guide"
+                              : fmt::format("tension up to {:.3g} MPa", r.solves[0].strongest.stress.value * 1e-6);
+  if (!r.solves.empty() && !r.solved())
+    pending.push_back(fmt::format("{}: no stress under this load: {}", at, r.solves[0].reason));
+  else if (r.shapes.size() > 1)
+    pending.push_back(fmt::format("{} breaks into {} pieces ({})", at, r.shapes.size(), why));
+  else if (r.changed)
+    pending.push_back(fmt::format("{} cracks ({})", at, why));
+  else if (r.solves.empty() && !r.cracks.empty())
+    pending.push_back(fmt::format("{} does not crack along its guide: {}", at, r.cracks[0].reason));
+}
+
+void World::run_guides(StepRecord& step) {
+  for (std::size_t root = 0; root < roots.size(); ++root)
+    for (std::size_t k = 0; k < roots[root].guides.size(); ++k) {
+      if (roots[root].guided[k] || scene.bodies[root].cracks[k].time > time()) continue;
+      roots[root].guided[k] = true;
+      std::vector<BodyId> due;  // by id: bodies shift while fragments replace their parents
+      for (std::size_t i = 0; i < bodies.size(); ++i)
+        if (companions[i].scene_body == root && cannot_break(i).empty()) due.push_back(bodies[i].id);
+      for (const BodyId id : due) guide(index_of(id), k, step);
+    }
+}
+
+void World::guide(std::size_t i, std::size_t crack, StepRecord& step) {
+  EventRecord event;
+  event.result = crack_along(*companions[i].solid, roots[companions[i].scene_body].guides[crack], fracture_options(i));
+  if (!event.result.cracks.empty()) take(i, std::move(event), step);
+}
+
+// Frees the operators solved longest ago until the rest fits the budget.
+void World::limit_operators() {
+  for (;;) {
+    std::size_t bytes = 0, oldest = companions.size();
+    for (std::size_t i = 0; i < companions.size(); ++i) {
+      if (!companions[i].solid->has_elastic()) continue;
+      bytes += companions[i].solid->elastic_bytes();
+      if (oldest == companions.size() || companions[i].last_solve < companions[oldest].last_solve) oldest = i;
+    }
+    if (bytes <= kOperatorBudget || oldest == companions.size()) return;
+    companions[oldest].solid->drop_elastic();
+  }
+}
+
+void World::advance() {
+  StepRecord step;
+  RigidStats stats;
+  {
+    const Stopwatch watch(step.rigid_seconds);
+    rigid_step(bodies, ground, rigid, cache, rigid_state, contacts, stats);
+  }
+  ++steps;
+  step.step = steps, step.time = time();
+  step.pairs_near = stats.contact.pairs_near, step.contacts = contacts.size(),
+  step.fields_built = stats.contact.fields_built;
+  step.contact_iterations = stats.iterations, step.asleep = stats.asleep;
+  {
+    const Stopwatch watch(step.fracture_seconds);
+    // By id: bodies shift while fragments replace their parents, and fragments of this step carry no contact yet.
+    struct Due {
+      BodyId id;
+      std::vector<BodyContact> loads;
+    };
+    std::vector<Due> due;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      std::vector<BodyContact> loads;
+      if (const std::string reason = reason_to_skip(i, loads); !reason.empty())
+        ++step.skipped[reason];
+      else
+        due.push_back({bodies[i].id, std::move(loads)});
+    }
+    for (Due& d : due) fracture(index_of(d.id), std::move(d.loads), step);
+    run_guides(step);
+    limit_operators();
+  }
+  step.bodies = bodies.size();
+  for (const Body& b : bodies) step.triangles += b.mesh->triangle_count();
+  record.steps.push_back(std::move(step));
+}
+
+}  // namespace sherd

@@ -1,0 +1,264 @@
+// The laws of an event's cracks under given stress fields: a crack either ends in valid pieces or leaves everything as
+// it was; volume is accounted for; stopped cracks stay; one bad crack never stops the others.
+#include "engine/step/crack_event.h"
+
+#include <gtest/gtest.h>
+
+#include <new>
+
+#include "engine/fracture/synthetic_fields.h"
+#include "engine/mesh/certificate.h"
+#include "engine/mesh/shapes.h"
+#include "engine/step/refit_piece.h"
+#include "kernels/core/error.h"
+#include "kernels/core/fault.h"
+
+namespace sherd {
+namespace {
+
+constexpr Real kEdge = 0.15, kThickness = 1e-3;
+
+// A bar along x, 3 by 1 by 1.
+struct Bar {
+  std::shared_ptr<const SurfaceMesh> mesh = std::make_shared<SurfaceMesh>(make_bar(3, 1, 1, 0.2));
+  RootScale root{kEdge, signed_volume(*mesh), bounding_box(*mesh).diagonal(), 0};
+  Solid solid{mesh, root};
+  FractureOptions options;
+  FractureResult result;
+
+  Bar() {
+    options.fields = {constant_field(1), constant_field(1), constant_field(kThickness)};
+    options.net_section = false;
+    options.min_fragment_volume = 1e-6;
+    result.volume_before = root.volume;
+  }
+};
+
+CrackSeed seed_below(Real x) {
+  return {{x, -0.5, 0.013}, {0, -1, 0}, {2, {1, 0, 0}}, kNone};
+}
+
+// Tension along x below the height `stop`, none above.
+FunctionField tension_below(Real stop) {
+  return FunctionField([stop](const Vec3& x) { return PrincipalStress{x.y < stop ? 2.0 : 0.0, {1, 0, 0}}; });
+}
+
+void expect_valid(const FractureResult& result) {
+  for (const FragmentShape& shape : result.shapes)
+    for (const auto& mesh : {shape.clean, shape.shown}) {
+      const MeshCertificate c = certify(*mesh);
+      EXPECT_TRUE(c.ok()) << c.first_defect;
+    }
+}
+
+void expect_balance(FractureResult& result) {
+  measure(result);
+  const Real rest = result.volume_before - result.removed_volume - result.dust_volume + result.remeshing_volume;
+  EXPECT_NEAR(result.volume_after, rest, 1e-12 * result.volume_before);
+}
+
+TEST(CrackEvent, ACrackThroughGivesTwoPiecesAndItsRecordSaysAll) {
+  Bar bar;
+  bar.options.first_crack_id = 7, bar.options.generation = 2;
+  const FunctionField field = tension_below(10);
+  const CrackSeed seed = seed_below(0.21);
+  CrackEvent event(bar.solid, bar.options, bar.result);
+  event.start(field, {&seed, 1});
+  event.finish();
+  ASSERT_EQ(bar.result.shapes.size(), 2u);
+  expect_valid(bar.result), expect_balance(bar.result);
+  ASSERT_EQ(bar.result.cracks.size(), 1u);
+  const CrackRecord& c = bar.result.cracks[0];
+  EXPECT_EQ(c.outcome, "complete");
+  EXPECT_EQ(c.id, 7);
+  EXPECT_EQ(bar.result.next_crack_id, 8);
+  EXPECT_EQ(c.generation, 2);
+  EXPECT_EQ(c.seed, seed.position);
+  EXPECT_EQ(c.stress, 2);
+  EXPECT_EQ(c.ladder_level, 0);
+  EXPECT_GT(c.steps, 3);
+  EXPECT_EQ(c.fragments, 2u);
+  // A plane across a flat box: area and outline are exact but for rounding of the sheet's border.
+  EXPECT_NEAR(c.area, 1, 1e-3);
+  EXPECT_NEAR(c.length, 4, 0.02);
+  EXPECT_NEAR(c.removed_volume, kThickness * 1, 1e-5 * kThickness + 1e-3 * kThickness);
+  EXPECT_LT(c.volume_error, 1e-13);
+}
+
+TEST(CrackEvent, AStoppedCrackRemovesNothingAndIsShownAsANotch) {
+  Bar bar;
+  const FunctionField field = tension_below(0.1);
+  const CrackSeed seed = seed_below(0.21);
+  CrackEvent event(bar.solid, bar.options, bar.result);
+  event.start(field, {&seed, 1});
+  event.finish();
+  ASSERT_EQ(bar.result.shapes.size(), 1u);
+  const FragmentShape& shape = bar.result.shapes[0];
+  EXPECT_EQ(shape.clean, bar.mesh);  // the very mesh: stress goes on being solved on it
+  ASSERT_EQ(shape.partial.size(), 1u);
+  expect_valid(bar.result), expect_balance(bar.result);
+  const CrackRecord& c = bar.result.cracks[0];
+  EXPECT_EQ(c.outcome, "arrested");
+  EXPECT_EQ(c.removed_volume, 0);
+  EXPECT_EQ(bar.result.removed_volume, 0);
+  // The notch tapers to nothing at its front, over the last row of the sheet (up to an edge).
+  EXPECT_LT(bar.result.notch_volume, kThickness * c.area);
+  EXPECT_GT(bar.result.notch_volume, kThickness * (c.area - kEdge * 1.3));
+}
+
+// Throws from the n-th call on.
+class FailingField final : public CrackField {
+ public:
+  FailingField(const CrackField& field, int calls, std::function<void()> fail)
+      : field_(field), calls_(calls), fail_(std::move(fail)) {}
+  void principal_stress(const Vec3Column& points, std::vector<PrincipalStress>& out) const override {
+    if (calls_-- <= 0) fail_();
+    field_.principal_stress(points, out);
+  }
+
+ private:
+  const CrackField& field_;
+  mutable int calls_;
+  std::function<void()> fail_;
+};
+
+TEST(CrackEvent, WhateverIsThrownDropsThatCrackAlone) {
+  const FunctionField good = tension_below(10);
+  const std::vector<std::pair<std::string, std::function<void()>>> failures = {
+      {"a broken invariant", [] { throw InternalError("a broken invariant"); }},
+      {"an input", [] { throw InputError("an input"); }},
+      {std::bad_alloc().what(), [] { throw std::bad_alloc(); }}};
+  for (const auto& [reason, fail] : failures)
+    for (const int calls : {0, 4}) {
+      Bar bar;
+      const SurfaceMesh before = *bar.mesh;
+      const FailingField bad(good, calls, fail);
+      const CrackSeed first = seed_below(-0.8), second = seed_below(0.21);
+      CrackEvent event(bar.solid, bar.options, bar.result);
+      event.start(bad, {&first, 1});
+      EXPECT_FALSE(bar.result.changed);
+      EXPECT_EQ(*bar.mesh, before);
+      ASSERT_EQ(bar.result.cracks.size(), 1u);
+      EXPECT_EQ(bar.result.cracks[0].outcome, "failed");
+      EXPECT_EQ(bar.result.cracks[0].reason, reason);
+      event.start(good, {&second, 1});  // the run goes on
+      event.finish();
+      EXPECT_EQ(bar.result.shapes.size(), 2u);
+      EXPECT_EQ(bar.result.cracks[1].outcome, "complete");
+    }
+}
+
+// T13 at the level of the event: a fault at any point of thickening and cutting leaves the pieces that were there.
+TEST(CrackEvent, AFaultAnywhereInACutLeavesThePiecesAsTheyWere) {
+  const FunctionField field = tension_below(10);
+  const CrackSeed first = seed_below(-0.8), second = seed_below(0.21);
+  std::size_t points = 0;  // of a crack that goes through
+  {
+    Bar bar;
+    CrackEvent event(bar.solid, bar.options, bar.result);
+    event.start(field, {&first, 1});
+    const FaultPlan plan(FaultPlan::kNever);
+    event.start(field, {&second, 1});
+    points = plan.seen();
+  }
+  EXPECT_GT(points, 5u);
+  for (std::size_t at = 0; at < points; ++at) {
+    Bar bar;
+    CrackEvent event(bar.solid, bar.options, bar.result);
+    event.start(field, {&first, 1});
+    {
+      const FaultPlan plan(at);
+      event.start(field, {&second, 1});
+    }
+    ASSERT_EQ(bar.result.cracks.size(), 2u);
+    const CrackRecord& c = bar.result.cracks[1];
+    event.finish();
+    expect_valid(bar.result), expect_balance(bar.result);
+    EXPECT_EQ(bar.result.shapes.size(), c.outcome == "complete" ? 3u : 2u) << at;
+    EXPECT_EQ(c.reason.empty(), c.outcome == "complete") << at;
+  }
+  EXPECT_GT(points, 1u);
+}
+
+TEST(CrackEvent, SeedsNearACrackOfTheEventStartNothing) {
+  Bar bar;
+  const FunctionField field = tension_below(10);
+  const std::vector<CrackSeed> seeds = {seed_below(0.21), seed_below(0.21 + 1.5 * kEdge), seed_below(-0.9)};
+  CrackEvent event(bar.solid, bar.options, bar.result);
+  event.start(field, seeds);
+  event.finish();
+  EXPECT_EQ(bar.result.cracks.size(), 2u);
+  EXPECT_EQ(bar.result.shapes.size(), 3u);
+  expect_valid(bar.result), expect_balance(bar.result);
+}
+
+TEST(CrackEvent, CracksAndPiecesKeepToTheirLimits) {
+  const FunctionField field = tension_below(10);
+  const std::vector<CrackSeed> seeds = {seed_below(0.21), seed_below(-0.9), seed_below(1.1)};
+  for (const auto& [cracks, pieces, expected] : {std::array<std::size_t, 3>{2, 10, 3}, {8, 2, 2}, {0, 10, 0}}) {
+    Bar bar;
+    bar.options.max_cracks = static_cast<int>(cracks), bar.options.max_pieces = pieces;
+    CrackEvent event(bar.solid, bar.options, bar.result);
+    event.start(field, seeds);
+    event.finish();
+    EXPECT_EQ(bar.result.shapes.size(), expected);
+  }
+}
+
+TEST(CrackEvent, DustIsDroppedAndCountedOrKept) {
+  // A slice of 0.03 at the bar's end: 0.01 of the volume.
+  const FunctionField field = tension_below(10);
+  const CrackSeed seed = seed_below(1.47);
+  for (const DustRule rule : {DustRule::kDrop, DustRule::kKeep}) {
+    Bar bar;
+    bar.options.min_fragment_volume = 0.05, bar.options.dust = rule;
+    CrackEvent event(bar.solid, bar.options, bar.result);
+    event.start(field, {&seed, 1});
+    event.finish();
+    ASSERT_EQ(bar.result.cracks.size(), 1u);
+    EXPECT_EQ(bar.result.cracks[0].outcome, "complete") << bar.result.cracks[0].reason;
+    expect_valid(bar.result), expect_balance(bar.result);
+    EXPECT_EQ(bar.result.shapes.size(), rule == DustRule::kDrop ? 1u : 2u);
+    const Real dust = rule == DustRule::kDrop ? 0.03 - 0.5 * kThickness : 0;
+    EXPECT_NEAR(bar.result.dust_volume, dust, 1e-4);
+    EXPECT_EQ(bar.result.cracks[0].dust_volume, bar.result.dust_volume);
+  }
+}
+
+TEST(RefitPiece, ASmallPieceGetsShorterEdgesSoThatItCanCrackOn) {
+  const RootScale root{kEdge, 3, 3.3, 0};
+  EXPECT_EQ(piece_edge_length(make_box({1, 1, 1}, 0.2), root), kEdge);
+  for (const Vec3& size : {Vec3{0.4, 0.3, 0.3}, Vec3{0.5, 0.1, 0.5}, Vec3{0.9, 0.2, 0.1}}) {
+    const SurfaceMesh piece = make_box(size, 0.2);
+    EXPECT_LT(piece_edge_length(piece, root), 0.9 * kEdge);
+    SurfaceMesh fit;
+    const RefitReport report = refit_piece(piece, root, fit);
+    ASSERT_TRUE(report.ok) << report.reason;
+    EXPECT_TRUE(certify(fit).ok());
+    // Meshes of the target edge have up to a third fewer triangles than equilateral ones would be.
+    EXPECT_GT(fit.triangle_count(), static_cast<std::size_t>(kLeastTriangles) * 2 / 3);
+    EXPECT_LT(fit.triangle_count(), static_cast<std::size_t>(kLeastTriangles) * 3);
+  }
+}
+
+TEST(CrackEvent, StrengthFieldsDecideWhereACrackStops) {
+  // The same tension everywhere; the upper half is stronger than it.
+  class Halves final : public ScalarField {
+    Real at(const Vec3& x) const override { return x.y > 0.1 ? 3 : 1; }
+    Real lower() const override { return 1; }
+    Real upper() const override { return 3; }
+  };
+  Bar bar;
+  bar.options.fields.propagation_strength = std::make_shared<Halves>();
+  const FunctionField field = tension_below(10);
+  const CrackSeed seed = seed_below(0.21);
+  CrackEvent event(bar.solid, bar.options, bar.result);
+  event.start(field, {&seed, 1});
+  event.finish();
+  ASSERT_EQ(bar.result.cracks.size(), 1u);
+  EXPECT_EQ(bar.result.cracks[0].outcome, "arrested") << bar.result.cracks[0].reason;
+  EXPECT_NEAR(bar.result.cracks[0].area, 0.6, kEdge);
+}
+
+}  // namespace
+}  // namespace sherd
