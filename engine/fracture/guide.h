@@ -8,6 +8,10 @@
 
 namespace sherd {
 
+// The same guide, independent of the body: a plane with a depth becomes the line in which it enters `body`. Pieces of
+// that body then follow what the whole was told, not where their own crack walls lie nearest.
+GuideSpec pinned(const GuideSpec& spec, const TriangleBvh& body);
+
 struct GuideShape;
 
 class Guide {

@@ -70,6 +70,14 @@ std::optional<GuideLine> surface_line(const GuidePlane& plane, const TriangleBvh
   return GuideLine{{foot - along, foot, foot + along}, normalized(inward)};
 }
 
+GuideSpec pinned(const GuideSpec& spec, const TriangleBvh& body) {
+  const auto* plane = std::get_if<GuidePlane>(&spec);
+  if (!plane || plane->depth == 0) return spec;
+  const std::optional<GuideLine> line = surface_line(*plane, body);
+  if (!line) return spec;
+  return GuidePolyline{line->points, line->inward, plane->depth};
+}
+
 Real overhang(const GuideLine& line, Real edge_length) {
   Real longest = 0;
   for (std::size_t i = 0; i + 1 < line.points.size(); ++i)

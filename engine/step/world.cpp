@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/fracture/guide.h"
 #include "engine/fragment/pieces.h"
 #include "engine/step/elastic_settings.h"
 #include "engine/step/inherit.h"
@@ -80,7 +81,10 @@ void World::add_body(std::size_t scene_body) {
   const SceneBody& s = scene.bodies[scene_body];
   BuiltBody built = build_body(s, BodyId{0});
   Root root{scene_fields(s, *built.body.mesh), {}, std::vector<bool>(s.cracks.size(), false)};
-  for (const SceneCrack& crack : s.cracks) root.guides.push_back(scene_guide(s, crack, built.messages));
+  if (!s.cracks.empty()) {
+    const TriangleBvh bvh(*built.body.mesh);
+    for (const SceneCrack& crack : s.cracks) root.guides.push_back(pinned(scene_guide(s, crack, built.messages), bvh));
+  }
   for (const std::string& m : built.messages) record.messages.push_back(built.body.name + ": " + m);
   roots.push_back(std::move(root));
   add_solids(built, scene_body, held_loads(scene, scene_body, *built.body.mesh));

@@ -178,6 +178,20 @@ TEST(Guide, ACrackEndsAtItsDepthAndAtTheGuidesBorder) {
     EXPECT_GT(notch.growth.sheet.position[v].x, 0.5 - 0.5 * h);
 }
 
+TEST(Guide, APinnedGuideMeansTheSamePlaceInEveryPiece) {
+  const GuidePlane deep{{0, 1, 0}, {1, 0, 0.2}, 0.4};
+  const GuideSpec pin = pinned(deep, ball().bvh);
+  const Followed halves = follow(ball(), GuidePlane{{0, 0, 0}, {0, 1, 0}});
+  ASSERT_EQ(halves.pieces.size(), 2u);
+  for (const SurfaceMesh& piece : halves.pieces) {
+    const Specimen half(piece);
+    const bool upper = bounding_box(piece).high.y > 0.5;
+    EXPECT_EQ(Guide(pin, half.bvh, half.mesh, ball().h).seeds(1).size(), upper ? 1u : 0u);
+  }
+  EXPECT_EQ(follow(ball(), pin).growth.outcome, GrowthOutcome::kArrested);
+  EXPECT_TRUE(std::holds_alternative<GuidePlane>(pinned(GuidePlane{{0, 1, 0}, {1, 0, 0}}, ball().bvh)));
+}
+
 TEST(Guide, EachCurveOnTheSurfaceGetsASeed) {
   const Specimen ring(make_torus(1, 0.3, 0.1));
   const GuidePlane plane{{0, 0, 0}, {1, 0, 0}};
