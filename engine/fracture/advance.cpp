@@ -120,10 +120,21 @@ bool advance_node(Growth& g, FrontLoop& loop, std::size_t i, const Advance& a) {
     g.sheet.move(p, push_out(g, at, normal));
     return true;
   }
+  if (!(a.length > 0)) return false;
   const Target target = find_target(g, at, normal, a);
   if (place(g, loop, i, target)) return true;
   const Target half = find_target(g, at, normal, {a.direction, 0.5 * a.length});
-  return place(g, loop, i, half);
+  if (place(g, loop, i, half)) return true;
+  // At a sharp edge of the body the sheet may leave room for less than the overshoot.
+  if (target.state != NodeState::kExited) return false;
+  std::vector<TriangleBvh::Hit> hits;
+  g.body.all_hits(at, a.direction, 0, a.length + kHitMargin * g.h, hits);
+  if (hits.empty()) return false;
+  const Real room = std::min(g.overshoot, hits.size() > 1 ? 0.5 * (hits[1].t - hits[0].t) : g.overshoot);
+  const auto just_out = [&](Real part) {
+    return place(g, loop, i, {at + (hits[0].t + part * room) * a.direction, NodeState::kExited});
+  };
+  return just_out(0.5) || just_out(0.2);
 }
 
 int advance_front(Growth& g, const std::vector<std::vector<Advance>>& velocity) {
@@ -133,7 +144,7 @@ int advance_front(Growth& g, const std::vector<std::vector<Advance>>& velocity) 
       const Advance& a = velocity[l][i];
       const std::uint32_t p = g.loops[l][i];
       if (g.sheet.state[p] != NodeState::kActive) continue;
-      if (a.length > 0 && advance_node(g, g.loops[l], i, a))
+      if (advance_node(g, g.loops[l], i, a))
         g.sheet.failures[g.loops[l][i]] = 0, ++moved;
       else if (++g.sheet.failures[p] >= kMaxRefusals)
         g.sheet.state[p] = NodeState::kBlocked;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/fracture/advance.h"
+#include "engine/fracture/sheet_quality.h"
 #include "engine/fracture/thicken.h"
 
 namespace sherd {
@@ -50,19 +51,6 @@ bool spirals(Growth& g) {
     for (const std::uint32_t v : loop)
       if (g.sheet.state[v] == NodeState::kActive) ++active, layered += g.sheet.has_layer(v, kReach * g.h);
   return layered >= kLeast && 2 * layered > active;
-}
-
-// Interior nodes only and each move a transaction, so the front and the invariants stay.
-void smooth_interior(Growth& g) {
-  constexpr int kPasses = 3;
-  for (int pass = 0; pass < kPasses; ++pass)
-    for (std::uint32_t v = 0; v < g.sheet.state.size(); ++v) {
-      if (g.sheet.state[v] != NodeState::kInterior || g.sheet.incident[v].empty()) continue;
-      Vec3 mean{};
-      const std::vector<std::uint32_t> ring = g.sheet.neighbours(v);
-      for (const std::uint32_t w : ring) mean += g.sheet.position[w];
-      g.sheet.move(v, 0.5 * (g.sheet.position[v] + mean / static_cast<Real>(ring.size())));
-    }
 }
 
 Real edge_of(const GrowthOptions& o, int level) {
@@ -202,7 +190,7 @@ GrowthResult Attempt::finish() {
   result.ladder_level = level_;
   judge(result);
   if (result.outcome == GrowthOutcome::kFailed) return result;
-  smooth_interior(g);
+  improve_inside(g.sheet);
   result.sheet = extract();
   if (result.outcome == GrowthOutcome::kArrested) result.sheet.stopped = stopped_;
   result.reason = test(result.sheet);

@@ -10,6 +10,7 @@ namespace {
 constexpr int kFanSize = 8;
 constexpr Real kFanRadius = 0.7;   // of h
 constexpr Real kFanTurn = 0.37;    // of the fan's angle: never symmetric, so never along a mesh edge
+constexpr Real kMinDepth = 0.05;   // of h: nearer to the surface a node of the fan does not count as inside
 constexpr Real kMinInward = 0.35;  // sine of the least angle between crack plane and surface
 
 // The coordinate axis farthest from e's direction.
@@ -47,7 +48,7 @@ std::string open_seed(Growth& g, const CrackSeed& seed) {
     Vec3 p = seed.position + kFanRadius * g.h * (std::cos(angle) * d + std::sin(angle) * s);
     NodeState state = NodeState::kActive;
     if (g.body.inside(p))
-      ++inside;
+      inside += g.body.closest(p).distance2 > kMinDepth * kMinDepth * g.h * g.h;
     else
       p = push_out(g, p, e), state = NodeState::kExited;
     ring.push_back(g.sheet.add_node(p, e, state));

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "engine/fracture/sheet_quality.h"
 #include "tests/fracture/crack_support.h"
 
 namespace sherd {
@@ -215,6 +216,64 @@ TEST(GrowCrack, AsksTheFieldOncePerStep) {
   field.batches = 0;
   const GrowthResult r = grow_crack(sphere().bvh, field, seed, sphere().options());
   EXPECT_LE(field.batches, static_cast<std::size_t>(r.steps));
+}
+
+TEST(GrowCrack, EigenvectorsThatFlipFromPointToPointDoNotMatter) {
+  // T7: noise of growing amplitude; each point's sign is as good as random.
+  for (const Real amplitude : {0.0, 0.3, 1.0}) {
+    const auto base = noisy_direction({0.9, 0.3, 0.1}, amplitude, 8 * sphere().h, 5);
+    const FunctionField plain(base);
+    const FunctionField flipping([&](const Vec3& p) {
+      PrincipalStress s = base(p);
+      if (std::fmod(std::abs(1e3 * (p.x + 2 * p.y + 3 * p.z)), 2) < 1) s.direction = -s.direction;
+      return s;
+    });
+    const CrackSeed seed = sphere().seed_at(sphere().nearest_vertex({0, 1, 0}), plain);
+    const GrowthResult a = grow_crack(sphere().bvh, plain, seed, sphere().options());
+    const GrowthResult b = grow_crack(sphere().bvh, flipping, seed, sphere().options());
+    EXPECT_EQ(a.outcome, b.outcome);
+    EXPECT_TRUE(same_sheet(a.sheet, b.sheet)) << amplitude;
+    EXPECT_EQ(check_grown(a, sphere(), sphere().options().thickness), "") << amplitude;
+  }
+}
+
+// T10: e turns by 2, 6 and 12 radians over the body's diagonal, along the crack: a helicoid's arms, which must not
+// spiral on.
+void expect_ends_in_a_helicoid(const Specimen& body) {
+  for (const Real turn : {2.0, 6.0, 12.0}) {
+    const Real rate = turn / bounding_box(body.mesh).diagonal();
+    const FunctionField field(rotating_direction({1, 0, 0}, {0, 1, 0}, {0, 1, 0}, rate));
+    const GrowthResult r = grow(body, field, {0, 1, 0});
+    EXPECT_EQ(check_grown(r, body, body.options().thickness), "") << turn;
+    EXPECT_NE(r.outcome, GrowthOutcome::kFailed) << turn << ": " << r.reason;
+  }
+}
+
+TEST(GrowCrack, FieldsNoSurfaceFollowsEndInAValidSheet) {
+  expect_ends_in_a_helicoid(sphere());
+}
+
+TEST(SlowGrowCrack, FieldsNoSurfaceFollowsEndInAValidSheetAroundACavity) {
+  expect_ends_in_a_helicoid(hollow());
+}
+
+TEST(GrowCrack, ACrackPlaneWithinAFaceOfTheBodyIsRefused) {
+  const FunctionField field(constant_direction({1, 0, 0}));
+  const GrowthResult r = grow(cube(), field, {0.5, 0.5, 0});
+  EXPECT_EQ(r.outcome, GrowthOutcome::kRejectedSeed);
+  EXPECT_FALSE(r.reason.empty());
+}
+
+TEST(GrowCrack, InnerTrianglesAreWellShaped) {
+  // Random fields leave triangles of 1 degree and less on the way; flips and smoothing take them out of the inside.
+  const FunctionField field(noisy_direction({0.9, 0.3, 0.1}, 0.3, 8 * sphere().h, 5));
+  const GrowthResult r = grow(sphere(), field, {0, 1, 0});
+  ASSERT_EQ(r.outcome, GrowthOutcome::kComplete) << r.reason;
+  const SheetQuality q = sheet_quality(r.sheet);
+  EXPECT_EQ(q.triangles, r.sheet.triangles.size());
+  EXPECT_GT(q.mean_angle, 30);  // of at most 60
+  EXPECT_GT(q.least_angle, 5);
+  EXPECT_EQ(q.below_10 > 0, q.least_angle < 10);
 }
 
 }  // namespace
