@@ -1,5 +1,6 @@
 #include "engine/fracture/seed.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "engine/fracture/advance.h"
@@ -10,7 +11,8 @@ namespace {
 constexpr int kFanSize = 8;
 constexpr Real kFanRadius = 0.7;   // of h
 constexpr Real kFanTurn = 0.37;    // of the fan's angle: never symmetric, so never along a mesh edge
-constexpr Real kMinDepth = 0.05;   // of h: nearer to the surface a node of the fan does not count as inside
+constexpr Real kAtSeed = 0.05;     // of h: faces this near are the seed's own
+constexpr Real kMinTilt = 0.1;     // sine of the least angle between crack plane and any of them
 constexpr Real kMinInward = 0.35;  // sine of the least angle between crack plane and surface
 
 // The coordinate axis farthest from e's direction.
@@ -18,6 +20,18 @@ Vec3 least_axis(const Vec3& e) {
   const Real x = std::abs(e.x), y = std::abs(e.y), z = std::abs(e.z);
   if (x <= y && x <= z) return {1, 0, 0};
   return y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+}
+
+// At an edge of the body the mean normal hides that the plane lies within one of the faces.
+bool runs_along_a_face(const TriangleBvh& body, const Vec3& seed, const Vec3& e, Real reach) {
+  const Vec3 margin{reach, reach, reach};
+  std::vector<std::uint32_t> faces;
+  body.overlapping({seed - margin, seed + margin}, faces);
+  return std::any_of(faces.begin(), faces.end(), [&](std::uint32_t f) {
+    const auto& c = body.corners(f);
+    if (distance2(closest_point_on_triangle(seed, c[0], c[1], c[2]), seed) > reach * reach) return false;
+    return norm(cross(normalized(cross(c[1] - c[0], c[2] - c[0])), e)) < kMinTilt;
+  });
 }
 
 }  // namespace
@@ -37,6 +51,8 @@ std::string open_seed(Growth& g, const CrackSeed& seed) {
   if (norm2(e) == 0 || norm2(n) == 0) return "the seed has no direction";
   const Vec3 inward = -(n - dot(n, e) * e);
   if (norm(inward) < kMinInward) return "the crack plane is tangent to the surface";
+  if (!seed.interior && runs_along_a_face(g.body, seed.position, e, kAtSeed * g.h))
+    return "the crack plane runs along a face at the seed";
   g.seed_normal = e;
   g.reference_stress = seed.stress.value;
   const Vec3 d = normalized(inward), s = cross(e, d);
@@ -48,7 +64,7 @@ std::string open_seed(Growth& g, const CrackSeed& seed) {
     Vec3 p = seed.position + kFanRadius * g.h * (std::cos(angle) * d + std::sin(angle) * s);
     NodeState state = NodeState::kActive;
     if (g.body.inside(p))
-      inside += g.body.closest(p).distance2 > kMinDepth * kMinDepth * g.h * g.h;
+      ++inside;
     else
       p = push_out(g, p, e), state = NodeState::kExited;
     ring.push_back(g.sheet.add_node(p, e, state));
