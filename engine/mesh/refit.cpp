@@ -23,6 +23,8 @@ struct Attempt {
   bool for_angles;  // of use only against angles, not for a volume that came out wrong
 };
 
+constexpr Real kCloseEnough = 5;  // of max_volume_change
+
 constexpr Attempt kLadder[] = {
     {"local", 2, 1, 0.02, false, false},           {"local, merged 0.1", 2, 1, 0.1, false, true},
     {"local, merged 0.3", 2, 1, 0.3, false, true}, {"wide", 6, 1, 0.1, false, false},
@@ -48,11 +50,14 @@ class Refit {
     bool angles_hold = false;  // an attempt failed by its volume alone: merging features more would not help
     for (const Attempt& attempt : kLadder) {
       if (attempt.for_angles && angles_hold) continue;
+      // Finer edges cost every later solve more than such a change is worth.
+      if (attempt.finer < 1 && found && least_change_ <= kCloseEnough * options_.max_volume_change * volume_)
+        return report_;
       SurfaceMesh mesh;
       const RemeshReport r = remesh(piece_, options_of(attempt), mesh);
       ++report_.attempts;
       angles_hold = r.status == RemeshStatus::kOk && r.min_angle >= options_.least_angle;
-      const std::string wrong = judge(r, mesh);
+      const std::string wrong = judge(r, mesh, attempt.finer);
       const Real change = std::abs(r.volume_change) * volume_;
       if (wrong.empty() && (!found || change < least_change_)) adopt(attempt, r, std::move(mesh)), found = true;
       if (found && least_change_ <= options_.max_volume_change * volume_) return report_;
@@ -85,11 +90,13 @@ class Refit {
     return o;
   }
 
-  std::string judge(const RemeshReport& r, const SurfaceMesh& mesh) const {
+  std::string judge(const RemeshReport& r, const SurfaceMesh& mesh, Real finer) const {
     if (r.status != RemeshStatus::kOk) return r.reason;
     if (!(r.min_angle >= options_.least_angle))
       return fmt::format("an angle of {:.2g} degrees ({} triangles below 1)", r.min_angle, r.below_1);
-    if (!(std::abs(r.volume_change) * volume_ <= largest_change_))
+    const Real close_enough = kCloseEnough * options_.max_volume_change * volume_;
+    const Real limit = finer == 1 ? std::max(largest_change_, close_enough) : largest_change_;
+    if (!(std::abs(r.volume_change) * volume_ <= limit))
       return fmt::format("the volume changes by {:.2g} of itself", r.volume_change);
     if (!is_valid(report_mesh(mesh))) return "the result is not valid";
     return {};

@@ -10,8 +10,8 @@ struct RefitOptions {
   Real edge_length = 0;         // target h, metres
   Real edge_per_thickness = 0;  // of SizingOptions; 0: h everywhere
   Real least_angle = 1;         // degrees that every triangle must have
-  // Of the piece's volume. A piece too small to keep that gets the attempt that comes closest, as long as it keeps this
-  // part of 10 h^3.
+  // Of the piece's volume. Where only finer edges would keep that, up to five times as much is taken; a piece too small
+  // for either gets the attempt that comes closest, as long as it keeps this part of 10 h^3.
   Real max_volume_change = 2e-4;
 };
 

@@ -8,9 +8,11 @@ namespace sherd {
 namespace {
 
 constexpr int kRounds = 3;
-constexpr Real kNegligible = 1e-6;  // of the target length: flat places stay exactly flat
-constexpr Real kMost = 0.1;         // of the target length: farther off is no matter of facets
-constexpr Real kMostShift = 0.02;   // of the target length, a round: what walls may give to keep the volume
+constexpr Real kNegligible = 1e-6;        // of the target length: flat places stay exactly flat
+constexpr Real kMost = 0.1;               // of the target length: farther off is no matter of facets
+constexpr Real kMostShift = 0.02;         // of the target length, a round: what walls may give to keep the volume
+constexpr Real kMostShiftOfFlats = 3e-4;  // the same for flat places: three rounds stay below 1e-3
+constexpr Real kVolumeMatters = 1e-5;     // of the volume
 constexpr Real kFlatCosine = 1 - 1e-7;
 
 }  // namespace
@@ -78,19 +80,27 @@ bool Remesher::may_give(std::uint32_t v) const {
   return gives;
 }
 
-// What feature lines and merged features have cost: one common step along the normals gives it back.
+// What feature lines and merged features have cost: a common step along the normals gives it back. Where walls and
+// curved places cannot, flat ones take a step too small to see.
 void Remesher::fit_volume() {
   const Real wanted = signed_volume(input_);
-  std::vector<std::uint32_t> givers;
-  for (std::uint32_t v = 0; v < mesh_.position.size(); ++v)
-    if (may_give(v)) givers.push_back(v);
+  std::vector<std::uint32_t> walls, all;
+  for (std::uint32_t v = 0; v < mesh_.position.size(); ++v) {
+    if (may_give(v)) walls.push_back(v);
+    if (may_fit(v)) all.push_back(v);
+  }
+  shift(walls, wanted, kMostShift);
+  if (std::abs(volume() - wanted) > kVolumeMatters * wanted) shift(all, wanted, kMostShiftOfFlats);
+}
+
+void Remesher::shift(const std::vector<std::uint32_t>& givers, Real wanted, Real most) {
   for (int round = 0; round < kRounds; ++round) {
     const Real missing = wanted - volume();
     Real area = 0;  // volume gained per metre of common step
     for (const std::uint32_t v : givers) area += norm(area_around(v)) / 3;
     if (!(area > 0)) return;
     for (const std::uint32_t v : givers) {
-      const Real limit = kMostShift * target(v), step = std::clamp(missing / area, -limit, limit);
+      const Real limit = most * target(v), step = std::clamp(missing / area, -limit, limit);
       if (std::abs(step) > 1e-3 * kNegligible * target(v))
         try_move(v, mesh_.position[v] + step * vertex_normal(v), 0.95);
     }

@@ -47,6 +47,7 @@ class Remesher {
   // remesh_fit.cpp
   void fit_heights();
   void fit_volume();
+  void shift(const std::vector<std::uint32_t>& givers, Real wanted, Real most);
   Real volume() const;
   bool may_give(std::uint32_t v) const;
   Vec3 area_around(std::uint32_t v) const;  // sum of the area vectors, m^2
