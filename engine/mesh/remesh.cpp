@@ -1,11 +1,13 @@
 #include "engine/mesh/remesh.h"
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
 #include <queue>
 
 #include "engine/mesh/attributes.h"
 #include "engine/mesh/intersections.h"
+#include "engine/mesh/remesh_part.h"
 #include "engine/mesh/remesh_work.h"
 #include "kernels/core/error.h"
 
@@ -38,7 +40,11 @@ void inherit(const SurfaceMesh& in, const Remesher& work, const std::vector<std:
   match_channels(in, out);
   for (CornerChannel& c : out.channels) c.value.clear();
   Real deviation2 = 0, face_deviation2 = 0;
-  for (std::size_t t = 0; t < out.triangle_count(); ++t) {
+  for (std::uint32_t t = 0; t < out.triangle_count(); ++t) {
+    if (work.untouched(faces_of[t])) {
+      copy_corners(in, faces_of[t], out);
+      continue;
+    }
     face_deviation2 = std::max(face_deviation2, work.input().closest(out.centroid(t)).distance2);
     const Vec3 n = normalized(out.area_normal2(t));
     const std::uint32_t region = work.mesh().region[faces_of[t]];
@@ -72,6 +78,34 @@ void measure(const SurfaceMesh& in, const SurfaceMesh& out, RemeshReport& report
   report.min_angle = smallest / degree;
   const Real volume = signed_volume(in);
   report.volume_change = volume != 0 ? (signed_volume(out) - volume) / volume : 0;
+}
+
+// Remeshes a closed mesh whose faces from `faces` on are ghosts; what is wrong with it, or "".
+std::string work_on(const SurfaceMesh& mesh, std::size_t faces, const RemeshOptions& options, RemeshedPart& result,
+                    RemeshReport& report) {
+  EditMesh edit;
+  const char* why = nullptr;
+  if (!edit.assign(mesh, why)) return why;
+  Remesher work(mesh, faces, std::move(edit), options, report);
+  work.run();
+  std::vector<std::uint32_t> faces_of;
+  result.mesh = work.mesh().extract(&faces_of, &result.vertex_of);
+  for (std::uint32_t& v : result.vertex_of)
+    if (v >= mesh.vertex_count()) v = kNone;
+  inherit(mesh, work, faces_of, result.mesh, options.edge_length, report);
+  return {};
+}
+
+// Faces from `first` on that meet each other, or "": each operation tested its faces, this tests the outcome.
+std::string intersections_from(const SurfaceMesh& mesh, std::size_t first) {
+  SurfaceMesh changed;
+  changed.vertices = mesh.vertices;
+  changed.triangles.assign(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(first), mesh.triangles.end());
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> examples;
+  if (count_self_intersections(changed, 1, &examples) == 0) return {};
+  const Vec3 at = changed.centroid(examples[0].first);
+  return fmt::format("faces intersect near ({:.6g}, {:.6g}, {:.6g}); does the input intersect itself there?", at.x,
+                     at.y, at.z);
 }
 
 }  // namespace
@@ -132,26 +166,24 @@ RemeshReport remesh(const SurfaceMesh& in, const RemeshOptions& options, Surface
     out = in;
     return report;
   };
-  EditMesh mesh;
-  const char* why = nullptr;
+  if (in.triangles.empty()) return refuse("the mesh has no triangles");
+  for (const Triangle& t : in.triangles)
+    if (std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return v >= in.vertex_count(); }))
+      return refuse("a triangle has an invalid vertex");
   SurfaceMesh source = in;
   source.faces.resize(in.triangle_count());
-  if (in.triangles.empty()) return refuse("the mesh has no triangles");
-  if (!mesh.assign(source, why)) return refuse(why);
-  Remesher work(source, std::move(mesh), options, report);
-  work.run();
-  std::vector<std::uint32_t> faces_of;
-  SurfaceMesh result = work.mesh().extract(&faces_of);
-  inherit(source, work, faces_of, result, options.edge_length, report);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> examples;
-  if (count_self_intersections(result, 1, &examples) > 0) {
-    const Vec3 at = result.centroid(examples[0].first);
-    return refuse(fmt::format("faces intersect near ({:.6g}, {:.6g}, {:.6g}); does the input intersect itself there?",
-                              at.x, at.y, at.z));
-  }
-  measure(source, result, report);
+  std::optional<MeshPart> part;
+  if (!options.locked.empty()) part = cut_out_part(source, options);
+  RemeshedPart result;
+  const std::string wrong = part ? work_on(part->mesh, part->faces, part->options, result, report)
+                                 : work_on(source, source.triangle_count(), options, result, report);
+  if (!wrong.empty()) return refuse(wrong);
+  std::size_t first_new = 0;
+  SurfaceMesh whole = part ? put_back(source, *part, result, first_new) : std::move(result.mesh);
+  if (const std::string meeting = intersections_from(whole, first_new); !meeting.empty()) return refuse(meeting);
+  measure(source, whole, report);
   report.status = RemeshStatus::kOk;
-  out = std::move(result);
+  out = std::move(whole);
   return report;
 }
 

@@ -46,11 +46,12 @@ struct RemeshReport {
 };
 
 // `in` is closed and 2-manifold (else the mesh is refused), without self-intersections (each operation is tested
-// exactly, so none arise; with some in the input the result may be refused). Feature lines: creases, and edges between
-// faces of different kind or crack id. Line ends, junctions, sharp turns stay where they are, other line vertices move
-// along the line only. Every output face has the kind, crack id and material of the input region it lies in, and
-// `source`, `side` and corner values of the closest input faces there. Vertices are renumbered (locked ones keep their
-// order). Deterministic. Throws InputError for options out of range.
+// exactly, so none arise; with some in the input the result may be refused). With locked vertices only the part around
+// the others is looked at: the cost is that part's, and faces elsewhere stay what they are. Feature lines: creases, and
+// edges between faces of different kind or crack id. Line ends, junctions, sharp turns stay where they are, other line
+// vertices move along the line only. Every output face has the kind, crack id and material of the input region it lies
+// in, and `source`, `side` and corner values of the closest input faces there. Vertices are renumbered (locked ones
+// keep their order). Deterministic. Throws InputError for options out of range.
 RemeshReport remesh(const SurfaceMesh& in, const RemeshOptions& options, SurfaceMesh& out);
 
 // Smallest angle of a triangle, radians; 0 for a degenerate one.

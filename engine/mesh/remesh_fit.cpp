@@ -12,7 +12,7 @@ constexpr Real kNegligible = 1e-6;        // of the target length: flat places s
 constexpr Real kMost = 0.1;               // of the target length: farther off is no matter of facets
 constexpr Real kMostShift = 0.02;         // of the target length, a round: what walls may give to keep the volume
 constexpr Real kMostShiftOfFlats = 3e-4;  // the same for flat places: three rounds stay below 1e-3
-constexpr Real kVolumeMatters = 1e-5;     // of the volume
+constexpr Real kVolumeMatters = 2e-4;     // of the target length cubed
 constexpr Real kFlatCosine = 1 - 1e-7;
 
 }  // namespace
@@ -90,7 +90,7 @@ void Remesher::fit_volume() {
     if (may_fit(v)) all.push_back(v);
   }
   shift(walls, wanted, kMostShift);
-  if (std::abs(volume() - wanted) > kVolumeMatters * wanted) shift(all, wanted, kMostShiftOfFlats);
+  if (std::abs(volume() - wanted) > kVolumeMatters * h_ * h_ * h_) shift(all, wanted, kMostShiftOfFlats);
 }
 
 void Remesher::shift(const std::vector<std::uint32_t>& givers, Real wanted, Real most) {

@@ -77,7 +77,7 @@ class LineFinder {
       for (std::size_t i = 0; i < vertices.size(); ++i)
         mesh_.for_out(vertices[i], [&](std::uint32_t h) {
           if (feature_[h] == kNoFeature) return;
-          boundary = boundary || feature_[h] == kBoundary;
+          boundary = boundary || feature_[h] == kBoundary || is_locked(vertices[i]);
           if (h < mesh_.twin[h]) length += mesh_.edge_length(h), edges.push_back(h);
           const std::uint32_t w = mesh_.to(h);
           if (!seen[w]) seen[w] = 1, vertices.push_back(w);
@@ -90,7 +90,7 @@ class LineFinder {
   // Creases that end in a smooth place less than 2 h from where they start.
   void drop_stubs() {
     for (std::uint32_t v = 0; v < mesh_.position.size(); ++v) {
-      if (mesh_.out[v] == kNone || feature_degree(v) != 1) continue;
+      if (mesh_.out[v] == kNone || is_locked(v) || feature_degree(v) != 1) continue;
       std::vector<std::uint32_t> path;
       Real length = 0;
       std::uint32_t at = v;

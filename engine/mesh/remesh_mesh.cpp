@@ -30,20 +30,24 @@ bool EditMesh::assign(const SurfaceMesh& mesh, const char*& reason) {
   return true;
 }
 
-SurfaceMesh EditMesh::extract(std::vector<std::uint32_t>* faces_of) const {
+SurfaceMesh EditMesh::extract(std::vector<std::uint32_t>* faces_of, std::vector<std::uint32_t>* vertices_of) const {
   SurfaceMesh mesh;
   std::vector<std::uint32_t> index(position.size(), kNone);
-  for (std::size_t v = 0; v < position.size(); ++v)
-    if (out[v] != kNone) {
-      index[v] = static_cast<std::uint32_t>(mesh.vertex_count());
-      mesh.vertices.push_back(position[v]);
-    }
   for (std::uint32_t t = 0; t < triangle.size(); ++t)
-    if (alive(t)) {
-      mesh.triangles.push_back({index[triangle[t][0]], index[triangle[t][1]], index[triangle[t][2]]});
-      mesh.faces.push_back_from(faces, t);
-      if (faces_of != nullptr) faces_of->push_back(t);
-    }
+    if (alive(t) && !ghost(t))
+      for (const std::uint32_t v : triangle[t]) index[v] = 0;
+  for (std::uint32_t v = 0; v < position.size(); ++v) {
+    if (index[v] == kNone) continue;
+    index[v] = static_cast<std::uint32_t>(mesh.vertex_count());
+    mesh.vertices.push_back(position[v]);
+    if (vertices_of != nullptr) vertices_of->push_back(v);
+  }
+  for (std::uint32_t t = 0; t < triangle.size(); ++t) {
+    if (!alive(t) || ghost(t)) continue;
+    mesh.triangles.push_back({index[triangle[t][0]], index[triangle[t][1]], index[triangle[t][2]]});
+    mesh.faces.push_back_from(faces, t);
+    if (faces_of != nullptr) faces_of->push_back(t);
+  }
   return mesh;
 }
 

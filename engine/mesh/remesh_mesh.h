@@ -18,14 +18,18 @@ struct EditMesh {
 
   // False when the mesh is not closed, 2-manifold and consistently oriented; the reason is then set.
   bool assign(const SurfaceMesh& mesh, const char*& reason);
-  // Without channels. `faces_of`, when given, receives the working mesh's triangle of each.
-  SurfaceMesh extract(std::vector<std::uint32_t>* faces_of = nullptr) const;
+  // Without channels and ghosts. The lists, when given, receive the working mesh's number of each face and vertex.
+  SurfaceMesh extract(std::vector<std::uint32_t>* faces_of = nullptr,
+                      std::vector<std::uint32_t>* vertices_of = nullptr) const;
 
   static std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
   static std::uint32_t prev(std::uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
   std::uint32_t from(std::uint32_t h) const { return triangle[h / 3][h % 3]; }
   std::uint32_t to(std::uint32_t h) const { return from(next(h)); }
   std::uint32_t tip(std::uint32_t h) const { return from(prev(h)); }
+  // Triangles first_ghost to end_ghost only close the borders of a part of a larger mesh (engine/mesh/remesh_part.h).
+  std::uint32_t first_ghost = 0, end_ghost = 0;
+  bool ghost(std::uint32_t t) const { return t >= first_ghost && t < end_ghost; }
   bool alive(std::uint32_t t) const { return triangle[t][0] != kNone; }
   // Next half-edge leaving from(h), counter-clockwise seen from outside.
   std::uint32_t turn(std::uint32_t h) const { return twin[prev(h)]; }

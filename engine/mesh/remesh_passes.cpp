@@ -30,25 +30,42 @@ bool still_there(const EditMesh& mesh, const EdgeKey& k) {
   return mesh.alive(k.h / 3) && mesh.from(k.h) == k.a && mesh.to(k.h) == k.b;
 }
 
+// What a TriangleBvh asks of the first n faces.
+SurfaceMesh first_faces(const SurfaceMesh& mesh, std::size_t n) {
+  SurfaceMesh part;
+  part.vertices = mesh.vertices;
+  part.triangles.assign(mesh.triangles.begin(), mesh.triangles.begin() + static_cast<std::ptrdiff_t>(n));
+  return part;
+}
+
 int valence_error(std::size_t valence) {
   return std::abs(static_cast<int>(valence) - 6);
 }
 
 }  // namespace
 
-Remesher::Remesher(const SurfaceMesh& in, EditMesh mesh, const RemeshOptions& options, RemeshReport& report)
+Remesher::Remesher(const SurfaceMesh& in, std::size_t real_faces, EditMesh mesh, const RemeshOptions& options,
+                   RemeshReport& report)
     : mesh_(std::move(mesh)),
       options_(options),
       report_(report),
       locked_(options.locked),
       input_(in),
-      input_bvh_(in),
+      input_bvh_(first_faces(in, real_faces)),
       input_region_(label_regions(in, options.keep_seams, kLeastChart * options.edge_length * options.edge_length)),
       size_(options.size),
       h_(options.edge_length),
       merge_(std::min(options.merge, kMerge)) {
   mesh_.region = input_region_;
+  mesh_.first_ghost = static_cast<std::uint32_t>(real_faces);
+  mesh_.end_ghost = static_cast<std::uint32_t>(in.triangle_count());
   features_ = find_feature_lines(mesh_, options.feature_angle, h_, options.locked);
+}
+
+bool Remesher::untouched(std::uint32_t face) const {
+  if (face >= input_.triangle_count() || mesh_.triangle[face] != input_.triangles[face]) return false;
+  const Triangle& f = input_.triangles[face];
+  return std::all_of(f.begin(), f.end(), [&](std::uint32_t v) { return mesh_.position[v] == input_.vertices[v]; });
 }
 
 void Remesher::run() {

@@ -24,7 +24,7 @@ void FaceTree::build(const EditMesh& mesh) {
   box_.assign(mesh.triangle.size(), {});
   leaf_.assign(mesh.triangle.size(), kNone);
   for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t)
-    if (mesh.alive(t)) {
+    if (mesh.alive(t) && !mesh.ghost(t)) {
       box_[t] = box_of(mesh.corners(t));
       leaf_[t] = 0;
       nodes_[0].faces.push_back(t);

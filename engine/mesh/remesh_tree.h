@@ -8,7 +8,7 @@ namespace sherd {
 
 class FaceTree {
  public:
-  void build(const EditMesh& mesh);
+  void build(const EditMesh& mesh);                       // without ghosts
   void add(const EditMesh& mesh, std::uint32_t face);     // a new face
   void update(const EditMesh& mesh, std::uint32_t face);  // moved a little
   void remove(std::uint32_t face);

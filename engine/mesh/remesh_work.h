@@ -13,11 +13,15 @@ namespace sherd {
 
 class Remesher {
  public:
-  Remesher(const SurfaceMesh& in, EditMesh mesh, const RemeshOptions& options, RemeshReport& report);
+  // The last faces of `in`, from `real_faces` on, are ghosts.
+  Remesher(const SurfaceMesh& in, std::size_t real_faces, EditMesh mesh, const RemeshOptions& options,
+           RemeshReport& report);
 
   void run();
   const EditMesh& mesh() const { return mesh_; }
   const TriangleBvh& input() const { return input_bvh_; }
+  // A face of the input that is still there as it was.
+  bool untouched(std::uint32_t face) const;
   // Closest point of the input among faces of the same region that face the same way as n (n = 0: any way).
   std::optional<TriangleBvh::Closest> project(const Vec3& p, const Vec3& n, std::uint32_t region) const;
 
