@@ -13,7 +13,9 @@ const Real kCosFold = std::cos(80 * kDegree);  // dihedral turn a smooth edge sh
 constexpr Real kSliver = 1e-3;                 // altitude / longest edge below which a face's own normal is not trusted
 constexpr Real kTiny = 0.02;      // of the target length: features closer than this may be merged to remove a sliver
 constexpr Real kVanishing = 0.1;  // of the target length: thinner faces do not show which way a sheet looks
-constexpr Real kPoorAngle = 10 * kDegree;  // operations may make faces this poor at most, or as poor as before
+constexpr Real kSpeck = 2e-3;     // of the target length
+constexpr Real kOpposite = -0.7, kAlike = 0.9;  // cosines between normals
+constexpr Real kPoorAngle = 10 * kDegree;       // operations may make faces this poor at most, or as poor as before
 
 Vec3 area_normal(const std::array<Vec3, 3>& c) {
   return cross(c[1] - c[0], c[2] - c[0]);
@@ -125,21 +127,30 @@ bool Remesher::clear(const Patch& after, const std::vector<std::uint32_t>& repla
   return true;
 }
 
-// Faces around the two ends look in opposite directions: the edge spans a thin sheet.
+// Faces around the two ends look in opposite directions, and neither end has faces like the other's already: the edge
+// spans a thin sheet. A vertex of three faces this close spans none: it is the cut-off tip of a
+// corner.
 bool Remesher::pinches_a_sheet(std::uint32_t h) const {
+  if (mesh_.edge_length(h) < kSpeck * edge_target(h) && mesh_.valence(mesh_.from(h)) == 3) return false;
   // Faces about to vanish say nothing.
   const Real tiny = std::min(merge_, kVanishing) * edge_target(h);
-  const auto normal = [&](std::uint32_t t) {
-    const auto c = mesh_.corners(t);
-    const Vec3 n = area_normal(c);
-    return norm2(n) > tiny * tiny * longest2(c) ? normalized(n) : Vec3{};
+  const auto normals = [&](std::uint32_t v) {
+    std::vector<Vec3> around;
+    mesh_.for_out(v, [&](std::uint32_t x) {
+      const auto c = mesh_.corners(x / 3);
+      const Vec3 n = area_normal(c);
+      if (norm2(n) > tiny * tiny * longest2(c)) around.push_back(normalized(n));
+    });
+    return around;
   };
-  bool pinches = false;
-  mesh_.for_out(mesh_.from(h), [&](std::uint32_t x) {
-    const Vec3 n = normal(x / 3);
-    mesh_.for_out(mesh_.to(h), [&](std::uint32_t y) { pinches = pinches || dot(n, normal(y / 3)) < -0.7; });
-  });
-  return pinches;
+  const auto has_like = [](const std::vector<Vec3>& around, const Vec3& n) {
+    return std::any_of(around.begin(), around.end(), [&](const Vec3& m) { return dot(n, m) > kAlike; });
+  };
+  const std::vector<Vec3> here = normals(mesh_.from(h)), there = normals(mesh_.to(h));
+  for (const Vec3& n : here)
+    for (const Vec3& m : there)
+      if (dot(n, m) < kOpposite && !has_like(there, n) && !has_like(here, m)) return true;
+  return false;
 }
 
 bool Remesher::may_collapse(std::uint32_t h, bool repairing) const {

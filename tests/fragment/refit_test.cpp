@@ -39,6 +39,7 @@ SurfaceMesh random_slab(const SurfaceMesh& piece, Real h, bool on_surface, std::
 
 struct Generations {
   std::size_t pieces = 0, refits = 0, refused = 0;
+  std::string reasons;
   Real volume_error = 0;  // of the body's: pieces, what the slabs removed and the body do not balance by this much
 };
 
@@ -77,6 +78,7 @@ Generations break_up(const SurfaceMesh& body, Real h, std::size_t least, bool on
           EXPECT_FALSE(report.reason.empty());
         }
         ++g.refits, g.refused += !report.ok;
+        if (!report.ok) g.reasons += "\n" + report.reason;
         next.push_back(std::move(out));
       }
     }
@@ -103,7 +105,7 @@ TEST(SlowRefit, SixtyFourPiecesOfEachBodyAreFitForTheNextSolve) {
   for (const auto& body : bodies) {
     const Generations g = break_up(body.mesh, body.h, 64, body.on_surface, 1);
     EXPECT_GE(g.pieces, 64u) << body.name;
-    EXPECT_EQ(g.refused, 0u) << body.name << " of " << g.refits;
+    EXPECT_EQ(g.refused, 0u) << body.name << " of " << g.refits << g.reasons;
     EXPECT_LT(g.volume_error, 1e-3) << body.name;
   }
 }
