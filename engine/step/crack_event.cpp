@@ -189,6 +189,7 @@ std::size_t CrackEvent::piece_at(const Vec3& x, Real reach) {
   std::size_t best = pieces_.size();
   Real least = reach * reach;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    if (pieces_[i].tree().inside(x)) return i;  // a seed inside
     const Real d2 = pieces_[i].tree().closest(x, reach).distance2;
     if (d2 < least) least = d2, best = i;
   }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/fracture/initiate.h"
+#include "engine/fracture/interior_seed.h"
 #include "engine/step/crack_event.h"
 #include "engine/step/stopwatch.h"
 
@@ -17,7 +18,18 @@ struct Solved {
   ElasticSolution solution;
   std::unique_ptr<StressState> state;
   std::vector<CrackSeed> seeds;
+  std::optional<CrackSeed> inside;
 };
+
+// Where the stress over strength exceeds the surface's largest, deep enough for a first slit.
+std::optional<CrackSeed> seed_inside(Solid& solid, const StressState& state, const CrackSeed& strongest,
+                                     const ScalarField& strength) {
+  constexpr Real kDeep = 1.5;  // of the edge length
+  const Real h = solid.edge_length();
+  const Real surface = strongest.stress.value / strength.at(strongest.position);
+  return find_interior_seed(solid.bvh(), StressCrackField(state), strength,
+                            {.spacing = kDeep * h, .depth = kDeep * h, .least = std::max(1.0, surface)});
+}
 
 void solve(Solid& solid, const MassProperties& mass, const Elastic& material, const SurfaceLoad& pull,
            const FractureOptions& options, EventSeconds& seconds, Solved& s, SolveRecord& record) {
@@ -48,7 +60,8 @@ void solve(Solid& solid, const MassProperties& mass, const Elastic& material, co
   s.state = std::make_unique<StressState>(*elastic, solid.recovery(), solid.bvh(), s.load, *s.particular, s.solution);
   record.strongest = strongest_point(solid.mesh(), solid.recovery(), *s.state, *options.fields.strength);
   s.seeds = find_seeds(solid.mesh(), solid.recovery(), *s.state, *options.fields.strength);
-  record.seeds = s.seeds.size();
+  if (options.interior_seeds) s.inside = seed_inside(solid, *s.state, record.strongest, *options.fields.strength);
+  record.seeds = s.seeds.size() + s.inside.has_value();
   record.solved = std::isfinite(record.strongest.stress.value);
   if (!record.solved) record.reason = "the stress is not finite";
 }
@@ -73,6 +86,7 @@ FractureResult break_once(Solid& solid, const MassProperties& mass, const Elasti
   const Real most = record.strongest.stress.value;
   if (!solid.partial.empty() && most > options.fields.propagation_strength->lower())
     event.resume(field, record.seeds > 0);
+  if (solved.inside) event.start(field, {&*solved.inside, 1}, CrackCause::kInterior);
   event.start(field, solved.seeds);
   event.finish();
   for (CrackRecord& crack : result.cracks) crack.round = round;

@@ -21,7 +21,8 @@ struct FractureOptions {
   ElasticOptions elastic;
   MaterialFields fields;
   Real speed = 0.5;
-  bool net_section = true;  // let the ligament of a stopped crack fail, see net_section.h
+  bool interior_seeds = false;  // also start cracks inside, where the stress exceeds that of the surface
+  bool net_section = true;      // let the ligament of a stopped crack fail, see net_section.h
   int max_cracks = 8;
   // How often the stress is solved within one event. 1: once, all cracks follow the stress of the body before any.
   // More: a piece is cut once a round, and the pieces that still bear load are solved anew under their part of it.

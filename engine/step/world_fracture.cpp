@@ -122,6 +122,7 @@ FractureOptions World::fracture_options(std::size_t i) const {
   o.net_section = scene.fracture.net_section;
   o.max_cracks = scene.fracture.max_cracks;
   o.rounds = scene.fracture.rounds;
+  o.interior_seeds = scene.fracture.interior_seeds;
   o.max_pieces = static_cast<std::size_t>(std::max(0, scene.fracture.max_fragments)) + 1;
   o.max_pieces -= std::min(o.max_pieces, bodies.size());
   o.min_fragment_volume = scene.fracture.min_fragment_volume;
