@@ -2,6 +2,7 @@
 
 #include <exception>
 
+#include "engine/fracture/check_growth.h"
 #include "engine/fracture/thicken.h"
 #include "tools/campaign/cpu_clock.h"
 #include "tools/campaign/hash.h"
@@ -53,13 +54,13 @@ bool grow_and_cut(const Specimen& s, const FunctionField& field, const CrackSeed
   return true;
 }
 
-void judge(const Specimen& s, Crack& crack) {
+void judge(const Specimen& s, const GrowthOptions& options, Crack& crack) {
   CrackReport& r = crack.report;
   const bool through = crack.growth.outcome == GrowthOutcome::kComplete;
   r.outcome = !through              ? CrackOutcome::kArrested
               : crack.cut.separated ? CrackOutcome::kSeparated
                                     : CrackOutcome::kPierced;
-  r.invalid = check_sheet_laws(crack.growth, s.body.bvh());
+  r.invalid = check_growth(crack.growth, s.body.bvh(), options);
   if (r.invalid.empty() && !(signed_volume(crack.slab) > 0)) r.invalid = "the slab's volume is not positive";
   if (r.invalid.empty()) r.invalid = check_cut_laws(s.body, crack.cut);
   // V2: in a body without handles whatever has its whole border outside separates.
@@ -109,7 +110,7 @@ Crack run_crack(const Specimen& s, const FunctionField& field, const CrackSeed& 
     const bool accepted = grow_and_cut(s, field, seed, options, crack);
     const CpuStopwatch watch(r.check_s);
     if (accepted)
-      judge(s, crack);
+      judge(s, options, crack);
     else if (r.reason.empty())
       r.invalid = "refused without a reason";
   } catch (const std::exception& e) {

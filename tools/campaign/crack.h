@@ -46,8 +46,6 @@ struct Crack {
 Crack run_crack(const Specimen& specimen, const FunctionField& field, const CrackSeed& seed, GrowthOptions options,
                 Real min_fragment_volume = 1e-5);
 
-// The laws S1-S5 of a grown sheet: the first that is broken, or an empty text.
-std::string check_sheet_laws(const GrowthResult& growth, const TriangleBvh& body);
 // The laws B1-B4 and V1 of a cut.
 std::string check_cut_laws(const CutBody& body, const CutResult& cut);
 // |V(body) - V(fragments) - V(removed) - V(dust)| / V(body)
