@@ -25,6 +25,12 @@ bool touches(const CrackSheet& sheet, const TriangleBvh& body) {
   return false;
 }
 
+// A complete sheet that lies in a face of the body only planes it off.
+bool does_nothing(const CutBody& body, const CrackSheet& sheet, const CutResult& cut) {
+  const auto waits = [](NodeState s) { return s == NodeState::kArrested || s == NodeState::kBlocked; };
+  return std::none_of(sheet.state.begin(), sheet.state.end(), waits) && !cut.separated && cut.euler <= body.euler();
+}
+
 // Runs `work`, which changes nothing before it has succeeded. False with the reason when it threw: a broken invariant,
 // an input no sheet can be made of, memory; the run goes on without this crack.
 template <class Work>
@@ -38,16 +44,6 @@ bool guarded(std::string& reason, const Work& work) {
   }
 }
 
-// Mean strength along the stopped front, what the ligament's mean tension is to be compared with.
-Real front_strength(const CrackSheet& sheet, const ScalarField& strength) {
-  Real sum = 0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < sheet.position.size(); ++i)
-    if (sheet.state[i] == NodeState::kArrested || sheet.state[i] == NodeState::kBlocked)
-      sum += strength.at(sheet.position[i]), ++count;
-  return count > 0 ? sum / static_cast<Real>(count) : strength.upper();
-}
-
 }  // namespace
 
 CrackEvent::CrackEvent(Solid& solid, const FractureOptions& options, FractureResult& result)
@@ -55,7 +51,16 @@ CrackEvent::CrackEvent(Solid& solid, const FractureOptions& options, FractureRes
   pieces_.push_back({solid.shared_mesh(), solid.partial, false, nullptr});
 }
 
-GrowthOptions CrackEvent::growth_options(Piece& piece, const CrackRecord& record, CutResult& accepted) {
+Obstacles CrackEvent::obstacles_in(const Piece& piece, std::size_t left_out) const {
+  Obstacles obstacles;
+  for (std::size_t k = 0; k < piece.partial.size(); ++k)
+    if (k != left_out) obstacles.add_sheet(piece.partial[k].id, piece.partial[k].sheet);
+  obstacles.set_walls(*piece.mesh);
+  return obstacles;
+}
+
+GrowthOptions CrackEvent::growth_options(Piece& piece, const CrackRecord& record, const Obstacles& obstacles,
+                                         CutResult& accepted) {
   GrowthOptions o;
   // A guided crack asks no stress, so no wall is too thin for it.
   o.edge_length = record.cause == CrackCause::kGuide ? solid_.edge_length() : solid_.crack_edge_length(record.seed);
@@ -64,9 +69,12 @@ GrowthOptions CrackEvent::growth_options(Piece& piece, const CrackRecord& record
   o.thickness = options_.fields.crack_thickness->upper();
   o.thickness_field = options_.fields.crack_thickness.get();
   o.speed = options_.speed;
+  o.obstacles = &obstacles;
   o.accept = [this, &piece, &accepted, id = record.id](const CrackSheet& sheet) {
     accepted = cut_piece(piece.cut_body(), sheet, id);
-    return accepted.ok ? std::string() : accepted.reason;
+    if (!accepted.ok) return accepted.reason;
+    return does_nothing(piece.cut_body(), sheet, accepted) ? std::string("it is complete and separates nothing")
+                                                           : std::string();
   };
   return o;
 }
@@ -90,20 +98,22 @@ CutResult CrackEvent::cut_piece(const CutBody& body, const CrackSheet& sheet, st
   return c;
 }
 
-CrackEvent::Grown CrackEvent::grow(Piece& piece, CrackRecord& record, const Grow& grow) {
+CrackEvent::Grown CrackEvent::grow(Piece& piece, CrackRecord& record, std::size_t left_out, const Grow& grow) {
   Grown grown;
   const Real cutting = result_.seconds.cut;
   const bool went = guarded(record.reason, [&] {
     const Stopwatch watch(result_.seconds.grow);
     fault_point("event.grow");
-    grown.result = grow(piece.tree(), growth_options(piece, record, grown.cut));
+    const Obstacles obstacles = obstacles_in(piece, left_out);
+    grown.result = grow(piece.tree(), growth_options(piece, record, obstacles, grown.cut));
   });
   result_.seconds.grow -= result_.seconds.cut - cutting;
   if (!went) grown.result.outcome = GrowthOutcome::kFailed, grown.result.reason = record.reason;
   return grown;
 }
 
-void CrackEvent::break_ligament(Piece& piece, const CrackField& field, Grown& grown, CrackRecord& record) {
+void CrackEvent::break_ligament(Piece& piece, const CrackField& field, Grown& grown, CrackRecord& record,
+                                std::size_t left_out) {
   if (!options_.net_section || grown.result.outcome != GrowthOutcome::kArrested) return;
   const Real cutting = result_.seconds.cut;
   CutResult through;
@@ -111,12 +121,13 @@ void CrackEvent::break_ligament(Piece& piece, const CrackField& field, Grown& gr
   std::string reason;
   const bool went = guarded(reason, [&] {
     const Stopwatch watch(result_.seconds.grow);
-    net = net_section(piece.tree(), field, grown.result.sheet, growth_options(piece, record, through));
+    const Obstacles obstacles = obstacles_in(piece, left_out);
+    net = net_section(piece.tree(), field, grown.result.sheet, growth_options(piece, record, obstacles, through));
   });
   result_.seconds.grow -= result_.seconds.cut - cutting;
   if (!went || !net.complete) return;
   record.net_section_stress = net.stress;
-  if (net.stress < front_strength(grown.result.sheet, *options_.fields.propagation_strength)) return;
+  if (net.stress < net.strength) return;
   const GrowthResult& stopped = grown.result;
   net.through.ladder_level = std::max(net.through.ladder_level, stopped.ladder_level);
   net.through.steps += stopped.steps;
@@ -126,7 +137,7 @@ void CrackEvent::break_ligament(Piece& piece, const CrackField& field, Grown& gr
   grown = {std::move(net.through), std::move(through)};
 }
 
-bool CrackEvent::commit(std::size_t index, Grown&& grown, CrackRecord& record) {
+void CrackEvent::commit(std::size_t index, Grown&& grown, CrackRecord& record, std::size_t left_out) {
   GrowthResult& g = grown.result;
   CutResult& c = grown.cut;
   record.generation = options_.generation;
@@ -134,11 +145,11 @@ bool CrackEvent::commit(std::size_t index, Grown&& grown, CrackRecord& record) {
   record.reason = g.reason, record.rungs = g.rungs;
   if (g.outcome == GrowthOutcome::kRejectedSeed || g.outcome == GrowthOutcome::kFailed) {
     record.outcome = g.outcome == GrowthOutcome::kFailed ? "failed" : "rejected";
-    return false;
+    return;
   }
   const bool arrested = g.outcome == GrowthOutcome::kArrested;
   record.outcome = arrested ? "arrested" : c.separated ? "complete" : "pierced";
-  record.fragments = c.fragments.size();
+  record.fragments = c.fragments.size(), record.met = g.met;
   const Real before = pieces_[index].cut_body().volume();
   Real after = 0;
   for (const SurfaceMesh& mesh : c.fragments) after += signed_volume(mesh);
@@ -147,19 +158,21 @@ bool CrackEvent::commit(std::size_t index, Grown&& grown, CrackRecord& record) {
   const bool committed = guarded(record.reason, [&] {
     CrackSheet sheet = g.sheet;
     grown_.reserve(grown_.size() + 1);
-    if (stays)
-      pieces_[index].partial.push_back(std::move(g.sheet));
+    std::vector<StoppedCrack>& stopped = pieces_[index].partial;
+    if (!stays)
+      replace(index, std::move(c), left_out);
+    else if (left_out == kNoSheet)
+      stopped.push_back({std::move(g.sheet), record.id, record.met});
     else
-      replace(index, std::move(c), kNoSheet);
+      stopped[left_out] = {std::move(g.sheet), record.id, record.met};
     grown_.push_back(std::move(sheet));
   });
   if (!committed) {
     record.outcome = "failed", record.fragments = 0;
-    return false;
+    return;
   }
   result_.changed = true;
   if (!stays) record.removed_volume = c.removed_volume, record.dust_volume = c.dust_volume;
-  return !stays;
 }
 
 // All that can throw comes before the first change.
@@ -170,9 +183,9 @@ void CrackEvent::replace(std::size_t index, CutResult&& c, std::size_t left_out)
   fault_point("event.replace");
   for (SurfaceMesh& mesh : c.fragments) {
     Piece part{std::make_shared<SurfaceMesh>(std::move(mesh)), {}, true, nullptr};
-    const std::vector<CrackSheet>& sheets = pieces_[index].partial;
+    const std::vector<StoppedCrack>& sheets = pieces_[index].partial;
     for (std::size_t k = 0; k < sheets.size(); ++k)
-      if (k != left_out && touches(sheets[k], part.tree())) part.partial.push_back(sheets[k]);
+      if (k != left_out && touches(sheets[k].sheet, part.tree())) part.partial.push_back(sheets[k]);
     parts.push_back(std::move(part));
   }
   fault_point("event.commit");
@@ -185,53 +198,68 @@ void CrackEvent::replace(std::size_t index, CutResult&& c, std::size_t left_out)
   result_.removed_volume += c.removed_volume, result_.dust_volume += c.dust_volume;
 }
 
-std::size_t CrackEvent::piece_at(const Vec3& x, Real reach) {
+std::size_t CrackEvent::piece_at(const CrackSeed& seed) {
+  const Vec3& x = seed.position;
+  const Real reach = 0.1 * solid_.edge_length();
   std::size_t best = pieces_.size();
+  if (seed.interior) {
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+      if (pieces_[i].tree().inside(x)) best = i;
+    return best;
+  }
   Real least = reach * reach;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    if (pieces_[i].tree().inside(x)) return i;  // a seed inside
     const Real d2 = pieces_[i].tree().closest(x, reach).distance2;
     if (d2 < least) least = d2, best = i;
   }
   return best;
 }
 
-void CrackEvent::resume(const CrackField& field, bool ligaments) {
-  // Sheets move between pieces while cracks go through, so each is taken out first and put back if it did not grow.
-  std::vector<CrackSheet> waiting = std::move(pieces_[0].partial);
-  pieces_[0].partial.clear();
-  for (CrackSheet& sheet : waiting) {
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      if (!touches(sheet, pieces_[i].tree())) continue;
-      CrackRecord record;
-      record.id = next_id_, record.cause = CrackCause::kResumed, record.seed = sheet.position[0],
-      record.stress = sheet.reference_stress;
-      Grown grown = grow(pieces_[i], record, [&](const TriangleBvh& body, const GrowthOptions& options) {
-        return resume_crack(body, field, sheet, options);
-      });
-      if (ligaments) break_ligament(pieces_[i], field, grown, record);
-      const GrowthOutcome outcome = grown.result.outcome;
-      const bool grew =
-          outcome == GrowthOutcome::kComplete ||
-          (outcome == GrowthOutcome::kArrested && grown.result.sheet.position.size() > sheet.position.size());
-      if (!grew) {
-        pieces_[i].partial.push_back(sheet);
-        continue;
-      }
-      ++next_id_;
-      const bool split = commit(i, std::move(grown), record);
-      if (record.outcome == "failed") pieces_[i].partial.push_back(sheet);
-      result_.cracks.push_back(std::move(record));
-      if (split) break;
-    }
+void CrackEvent::resume_crack_of(std::int32_t id, const CrackField& field, bool ligaments) {
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const std::vector<StoppedCrack>& stopped = pieces_[i].partial;
+    const auto at = std::find_if(stopped.begin(), stopped.end(), [&](const StoppedCrack& s) { return s.id == id; });
+    if (at == stopped.end()) continue;
+    const auto k = static_cast<std::size_t>(at - stopped.begin());
+    const CrackSheet sheet = at->sheet;
+    CrackRecord record;
+    record.id = next_id_, record.cause = CrackCause::kResumed, record.seed = sheet.position[0],
+    record.stress = sheet.reference_stress;
+    Grown grown = grow(pieces_[i], record, k, [&](const TriangleBvh& body, const GrowthOptions& options) {
+      return resume_crack(body, field, sheet, options);
+    });
+    if (ligaments) break_ligament(pieces_[i], field, grown, record, k);
+    const GrowthResult& g = grown.result;
+    const bool grew = g.outcome == GrowthOutcome::kComplete ||
+                      (g.outcome == GrowthOutcome::kArrested && g.sheet.position.size() > sheet.position.size());
+    if (!grew) continue;
+    ++next_id_;
+    commit(i, std::move(grown), record, k);
+    result_.cracks.push_back(std::move(record));
   }
+}
+
+void CrackEvent::resume(const CrackField& field, bool ligaments) {
+  for (const StoppedCrack& stopped : solid_.partial) resume_crack_of(stopped.id, field, ligaments);
+  join(field);
+}
+
+void CrackEvent::join(const CrackField& field) {
+  std::vector<std::int32_t> waiting;
+  for (const Piece& piece : pieces_)
+    for (const StoppedCrack& s : piece.partial)
+      if (piece.was_cut && !s.met.empty()) waiting.push_back(s.id);
+  std::sort(waiting.begin(), waiting.end());
+  waiting.erase(std::unique(waiting.begin(), waiting.end()), waiting.end());
+  for (const std::int32_t id : waiting) resume_crack_of(id, field, false);
 }
 
 bool CrackEvent::may_start(const CrackSeed& seed) const {
   const Real apart = 2 * solid_.edge_length();
   const auto close_to = [&](const CrackSheet& s) { return node_distance2(s, seed.position) < apart * apart; };
+  const auto stopped_close_to = [&](const StoppedCrack& s) { return close_to(s.sheet); };
   return std::none_of(grown_.begin(), grown_.end(), close_to) &&
-         std::none_of(solid_.partial.begin(), solid_.partial.end(), close_to);
+         std::none_of(solid_.partial.begin(), solid_.partial.end(), stopped_close_to);
 }
 
 void CrackEvent::start(const CrackField& field, std::span<const CrackSeed> seeds, CrackCause cause) {
@@ -240,21 +268,22 @@ void CrackEvent::start(const CrackField& field, std::span<const CrackSeed> seeds
     if (cracks_ >= options_.max_cracks || tried_ >= kTriesPerCrack * options_.max_cracks) return;
     if (pieces_.size() >= options_.max_pieces) return;
     if (!may_start(seed)) continue;
-    const std::size_t index = piece_at(seed.position, 0.1 * solid_.edge_length());
+    const std::size_t index = piece_at(seed);
     if (index == pieces_.size()) continue;
     // The stress in a piece that a crack has just made is another one; a later round asks for it.
     if (options_.rounds > 1 && pieces_[index].was_cut) continue;
     ++tried_;
     CrackRecord record;
     record.id = next_id_++, record.cause = cause, record.seed = seed.position, record.stress = seed.stress.value;
-    Grown grown = grow(pieces_[index], record, [&](const TriangleBvh& body, const GrowthOptions& options) {
+    Grown grown = grow(pieces_[index], record, kNoSheet, [&](const TriangleBvh& body, const GrowthOptions& options) {
       return grow_crack(body, field, seed, options);
     });
     // The depth at which a guided crack stops is meant.
-    if (cause != CrackCause::kGuide) break_ligament(pieces_[index], field, grown, record);
-    commit(index, std::move(grown), record);
+    if (cause != CrackCause::kGuide) break_ligament(pieces_[index], field, grown, record, kNoSheet);
+    commit(index, std::move(grown), record, kNoSheet);
     cracks_ += record.outcome != "rejected";
     result_.cracks.push_back(std::move(record));
+    if (result_.cracks.back().fragments > 1) join(field);
   }
 }
 
@@ -262,7 +291,7 @@ bool CrackEvent::split_by(std::size_t index, std::size_t k) {
   bool split = false;
   std::string reason;
   guarded(reason, [&] {
-    CutResult c = cut_piece(pieces_[index].cut_body(), pieces_[index].partial[k], next_id_);
+    CutResult c = cut_piece(pieces_[index].cut_body(), pieces_[index].partial[k].sheet, next_id_);
     if (!c.ok || c.fragments.size() < 2) return;
     replace(index, std::move(c), k);
     split = true;
@@ -282,9 +311,9 @@ void CrackEvent::split_by_partials() {
 
 void CrackEvent::cut_notches(FragmentShape& shape) {
   std::string reason;
-  for (const CrackSheet& sheet : shape.partial)
+  for (const StoppedCrack& stopped : shape.partial)
     guarded(reason, [&] {
-      CutResult c = cut_piece(CutBody(*shape.shown), sheet, next_id_);
+      CutResult c = cut_piece(CutBody(*shape.shown), stopped.sheet, next_id_);
       if (c.ok && c.fragments.size() == 1) shape.shown = std::make_shared<SurfaceMesh>(std::move(c.fragments[0]));
     });
 }

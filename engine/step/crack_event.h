@@ -28,7 +28,7 @@ class CrackEvent {
  private:
   struct Piece {
     std::shared_ptr<const SurfaceMesh> mesh;
-    std::vector<CrackSheet> partial;
+    std::vector<StoppedCrack> partial;
     bool was_cut = false;
     std::unique_ptr<CutBody> body;  // of `mesh`, made when first asked for
 
@@ -46,17 +46,25 @@ class CrackEvent {
   static constexpr std::size_t kNoSheet = static_cast<std::size_t>(-1);
   using Grow = std::function<GrowthResult(const TriangleBvh& body, const GrowthOptions& options)>;
 
-  GrowthOptions growth_options(Piece& piece, const CrackRecord& record, CutResult& accepted);
-  // Grows with the cut as the ladder's last test.
-  Grown grow(Piece& piece, CrackRecord& record, const Grow& grow);
+  // What stops a crack in a piece: its stopped cracks but for number `left_out`; and what attracts it: crack walls.
+  Obstacles obstacles_in(const Piece& piece, std::size_t left_out) const;
+  GrowthOptions growth_options(Piece& piece, const CrackRecord& record, const Obstacles& obstacles,
+                               CutResult& accepted);
+  // Grows with the cut as the ladder's last test. `left_out`: the piece's stopped crack that grows on, or kNoSheet.
+  Grown grow(Piece& piece, CrackRecord& record, std::size_t left_out, const Grow& grow);
   // Lets the ligament of a stopped crack fail where it cannot bear the load.
-  void break_ligament(Piece& piece, const CrackField& field, Grown& grown, CrackRecord& record);
-  // Makes the crack part of the event; true when the piece list changed.
-  bool commit(std::size_t index, Grown&& grown, CrackRecord& record);
+  void break_ligament(Piece& piece, const CrackField& field, Grown& grown, CrackRecord& record, std::size_t left_out);
+  // Makes the crack part of the event, in the place of the stopped crack `left_out`.
+  void commit(std::size_t index, Grown&& grown, CrackRecord& record, std::size_t left_out);
+  // Lets the stopped crack `id` grow on wherever it is.
+  void resume_crack_of(std::int32_t id, const CrackField& field, bool ligaments);
+  // Cracks that ended at others go on once those have gone through.
+  void join(const CrackField& field);
   CutResult cut_piece(const CutBody& body, const CrackSheet& sheet, std::int32_t crack);
   // The cut's parts take the piece's place, with its stopped cracks but for number `left_out`.
   void replace(std::size_t index, CutResult&& cut, std::size_t left_out);
-  std::size_t piece_at(const Vec3& x, Real reach);
+  // The piece whose surface the seed lies on, or whose inside if it is an interior one.
+  std::size_t piece_at(const CrackSeed& seed);
   bool may_start(const CrackSeed& seed) const;
   bool split_by(std::size_t index, std::size_t k);
   void split_by_partials();

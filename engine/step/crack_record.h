@@ -29,7 +29,8 @@ struct CrackRecord {
   Real dust_volume = 0;         // of pieces too small to keep that it cut off, m^3
   // |piece before - pieces after - removed - dust| over the piece before; the exact cut keeps it at rounding.
   Real volume_error = 0;
-  std::size_t fragments = 0;  // the piece it ran through fell into
+  std::vector<std::int32_t> met;  // stopped cracks it ran into and ended at
+  std::size_t fragments = 0;      // the piece it ran through fell into
 };
 
 }  // namespace sherd

@@ -37,7 +37,7 @@ struct FractureOptions {
 struct FragmentShape {
   std::shared_ptr<const SurfaceMesh> clean;  // for stress
   std::shared_ptr<const SurfaceMesh> shown;  // with the notches of the partial cracks; same as clean without any
-  std::vector<CrackSheet> partial;
+  std::vector<StoppedCrack> partial;
   Real edge_length = 0;  // of the clean mesh, m
   bool was_cut = false;  // in the last round: another piece than before
 };

@@ -18,6 +18,12 @@ struct RootScale {
   Real edge_per_thickness = 0;  // of the scene body
 };
 
+struct StoppedCrack {
+  CrackSheet sheet;
+  std::int32_t id = 0;            // of the crack's record
+  std::vector<std::int32_t> met;  // stopped cracks it ran into, where it waits for them to go through
+};
+
 // A crack that stopped inside is kept as a sheet beside the *clean* mesh (without its notch): the stress is solved on
 // the clean mesh and the sheet grows on from it later (design O13). The two walls of a notch lie a thousandth of an
 // edge apart, and a displacement formulation degenerates there; so a stopped crack is seen and resumes at the lower
@@ -32,7 +38,7 @@ class Solid {
   const std::shared_ptr<const SurfaceMesh>& shared_mesh() const { return clean_; }
   const RootScale& root() const { return root_; }
   Real edge_length() const { return edge_length_; }
-  std::vector<CrackSheet> partial;  // cracks that stopped inside
+  std::vector<StoppedCrack> partial;  // cracks that stopped inside
 
   Real mesh_volume();  // m^3
   Real diagonal();     // of the bounding box, m

@@ -62,6 +62,7 @@ Json crack_json(const CrackRecord& c) {
          {"volume_error", c.volume_error},
          {"fragments", c.fragments}};
   if (c.net_section_stress != 0) j["net_section_stress"] = c.net_section_stress;
+  if (!c.met.empty()) j["met"] = c.met;
   if (!c.reason.empty()) j["reason"] = c.reason;
   for (std::size_t k = 0; k < c.rungs.reason.size(); ++k)
     if (!c.rungs.reason[k].empty()) j["rungs"].push_back({{"level", k}, {"reason", c.rungs.reason[k]}});

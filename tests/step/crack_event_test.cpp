@@ -106,6 +106,53 @@ TEST(CrackEvent, AStoppedCrackRemovesNothingAndIsShownAsANotch) {
   EXPECT_GT(bar.result.notch_volume, kThickness * (c.area - kEdge * 1.3));
 }
 
+// Across the bar's height inside the strip |z| < half, none elsewhere.
+FunctionField lift(Real half) {
+  return FunctionField([half](const Vec3& x) { return PrincipalStress{std::abs(x.z) < half ? 2.0 : 0.0, {0, 1, 0}}; });
+}
+
+CrackSeed seed_at_end() {
+  return {{1.5, -0.217, 0.013}, {1, 0, 0}, {2, {0, 1, 0}}, kNone};
+}
+
+TEST(CrackEvent, ACrackEndsAtAStoppedOneAndGoesOnOnceThatGoesThrough) {
+  for (const bool wide : {true, false}) {
+    Bar bar;
+    const CrackSeed notch = seed_below(0.21), across = seed_at_end();
+    CrackEvent event(bar.solid, bar.options, bar.result);
+    event.start(tension_below(0.1), {&notch, 1});
+    event.start(lift(wide ? 10 : 0.2), {&across, 1});
+    event.finish();
+    ASSERT_EQ(bar.result.cracks.size(), 2u);
+    EXPECT_EQ(bar.result.cracks[1].outcome, "arrested") << bar.result.cracks[1].reason;
+    EXPECT_EQ(bar.result.cracks[1].met, std::vector<std::int32_t>{bar.result.cracks[0].id});
+    // From the bar's end to the notch, over the bar's width or the strip's (to an edge on either side).
+    EXPECT_NEAR(bar.result.cracks[1].area, (1.5 - 0.21) * (wide ? 1 : 0.4), wide ? 0.05 : (1.5 - 0.21) * 2 * kEdge);
+    ASSERT_EQ(bar.result.shapes.size(), 1u);
+    ASSERT_EQ(bar.result.shapes[0].partial.size(), 2u);
+    expect_valid(bar.result), expect_balance(bar.result);
+
+    bar.solid.partial = bar.result.shapes[0].partial;
+    FractureResult later;
+    later.volume_before = bar.root.volume;
+    bar.options.first_crack_id = bar.result.next_crack_id;
+    CrackEvent next(bar.solid, bar.options, later);
+    next.resume(FunctionField([](const Vec3& x) {
+                  return PrincipalStress{std::abs(x.x - 0.21) < 0.1 ? 2.0 : 0.0, {1, 0, 0}};
+                }),
+                false);
+    next.finish();
+    EXPECT_EQ(later.cracks[0].outcome, "complete");
+    EXPECT_EQ(later.cracks[0].cause, CrackCause::kResumed);
+    // The wide one had only the notch's wall to reach; the narrow one stays, in one of the two pieces.
+    ASSERT_EQ(later.shapes.size(), wide ? 3u : 2u);
+    std::size_t stopped = 0;
+    for (const FragmentShape& shape : later.shapes) stopped += shape.partial.size();
+    EXPECT_EQ(stopped, wide ? 0u : 1u);
+    expect_valid(later), expect_balance(later);
+  }
+}
+
 // Throws from the n-th call on.
 class FailingField final : public CrackField {
  public:
