@@ -30,7 +30,7 @@ constexpr Real kShadowReach = 12;                // eye distances from the targe
 constexpr Real kOcclusionRadius = 0.1;           // of the picture's height at the target
 constexpr Real kSunTangent = 0.07;               // half-width of the sun seen from the scene: a large, soft lamp
 const Vec3 kEdgeColour{0.03, 0.035, 0.05};       // of a wireframe's lines
-constexpr Real kEdge = 0.75, kFaintEdge = 0.15;  // their opacity
+constexpr Real kEdge = 0.6, kFaintEdge = 0.15;  // their opacity
 
 // Texture units.
 constexpr int kShadowDepthUnit = 0, kShadowCompareUnit = 1, kOcclusionUnit = 2, kInputUnit = 3;

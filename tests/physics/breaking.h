@@ -4,6 +4,7 @@
 
 #include "engine/fracture/initiate.h"
 #include "engine/fracture/net_section.h"
+#include "tests/physics/helix.h"
 #include "tools/exact/breakage.h"
 #include "tools/exact/solve.h"
 
@@ -62,9 +63,6 @@ inline CrackArea crack_area(const CrackSheet& sheet, const TriangleBvh& body) {
 }
 
 // Where the crack crosses the surface: border edges between exited nodes, which lie a small overshoot outside of it.
-struct TraceEdge {
-  Vec3 from, to;
-};
 inline std::vector<TraceEdge> trace(const CrackSheet& sheet) {
   std::vector<TraceEdge> out;
   for (const auto& loop : border_loops(sheet))

@@ -18,7 +18,7 @@ Real path_distance(const CrackSheet& a, const CrackSheet& b, const TriangleBvh& 
 }
 
 // Off the middle of a bent beam, tension turns from the axis towards the load point as shear takes over: the crack
-// starts upright and bends by some 40 degrees.
+// starts upright and bends, and stops where the beam is compressed. (Beyond that no stress steers it.)
 TEST(SlowCrackPath, ConvergesWithTheMesh) {
   std::vector<CrackSheet> paths;
   std::unique_ptr<Breaking> beam;
@@ -32,8 +32,8 @@ TEST(SlowCrackPath, ConvergesWithTheMesh) {
     std::vector<PrincipalStress> stress;
     beam->field->principal_stress(point, stress);
     seed.stress = stress[0];
-    GrowthResult crack = beam->grow(seed, beam->options(0.2));
-    ASSERT_EQ(crack.outcome, GrowthOutcome::kComplete) << crack.reason;
+    GrowthResult crack = grow_crack(beam->bvh(), *beam->field, seed, beam->options(0.2));
+    ASSERT_EQ(crack.outcome, GrowthOutcome::kArrested) << crack.reason;
     EXPECT_EQ(crack.ladder_level, 0);
     paths.push_back(std::move(crack.sheet));
   }

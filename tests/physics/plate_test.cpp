@@ -1,11 +1,10 @@
 // A plate struck in the middle: radial cracks. The first crack runs through the middle; each half then bends about its
 // own cut edge and cracks from there, which takes the stress of the halves.
-#include <numbers>
-
 #include "engine/fracture/thicken.h"
 #include "engine/fragment/cut.h"
 #include "engine/mesh/remesh.h"
 #include "tests/physics/breaking.h"
+#include "tests/physics/circle.h"
 
 namespace sherd {
 namespace {
@@ -40,24 +39,6 @@ std::vector<SurfaceMesh> break_piece(const exact::Breakage& piece, const Strengt
     return std::move(result.fragments);
   }
   return {};
-}
-
-// How often the piece changes along a circle about y at the given height.
-int crossings(const std::vector<SurfaceMesh>& pieces, Real radius, Real height) {
-  constexpr int kPoints = 720;
-  std::vector<TriangleBvh> trees(pieces.begin(), pieces.end());
-  std::vector<std::size_t> order;
-  for (int i = 0; i < kPoints; ++i) {
-    const Real a = 2 * std::numbers::pi * i / kPoints;
-    const Vec3 x{radius * std::cos(a), height, radius * std::sin(a)};
-    for (std::size_t k = 0; k < trees.size(); ++k)
-      if (trees[k].inside(x)) {
-        if (order.empty() || order.back() != k) order.push_back(k);
-        break;
-      }
-  }
-  if (order.size() > 1 && order.front() == order.back()) order.pop_back();
-  return order.size() > 1 ? static_cast<int>(order.size()) : 0;
 }
 
 TEST(SlowStruckPlate, CracksRadially) {
