@@ -10,10 +10,7 @@ Real piece_edge_length(const SurfaceMesh& piece, const RootScale& root) {
 }
 
 RefitReport refit_piece(const SurfaceMesh& piece, const RootScale& root, SurfaceMesh& out) {
-  // Density makes up for lost volume, finer edges would be paid for in every later solve.
-  constexpr Real kMaxVolumeChange = 5e-4;
   RefitOptions o;
-  o.max_volume_change = kMaxVolumeChange;
   o.edge_length = piece_edge_length(piece, root);
   o.edge_per_thickness = root.edge_per_thickness;
   return refit(piece, o, out);

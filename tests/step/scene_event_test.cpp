@@ -72,6 +72,31 @@ TEST(AppliedLoads, BendingBreaksABarWithoutContactAndLeavesItAtRest) {
   EXPECT_EQ(r.stats["events"].size(), 1u);
 }
 
+TEST(Rounds, PiecesAreSolvedAnewUnderTheirPartOfTheLoad) {
+  // The bent bar breaks in the middle in the first round; each half, held by its inertia, still bears its couple.
+  const std::string text = kFreeBar + end_load(1, "moment = [0, 0, 150]") + end_load(-1, "moment = [0, 0, -150]") +
+                           "[fracture]\nrounds = 2\n";
+  const RunResult r = run_scene(text, 1);
+  ASSERT_EQ(r.stats["events"].size(), 1u);
+  const auto& event = r.stats["events"][0];
+  int first = 0;
+  for (const auto& crack : event["cracks"]) first += crack["round"] == 0 && crack["outcome"] == "complete";
+  EXPECT_EQ(first, 1);  // a piece is cut once a round
+  ASSERT_EQ(event["later_solves"].size(), 2u);
+  for (const auto& solve : event["later_solves"]) {
+    EXPECT_TRUE(solve["ok"]) << solve;
+    EXPECT_EQ(solve["round"], 1);
+    // The half's own end bears the whole couple, 7.2 MPa beside the loaded face, and less towards the cut.
+    EXPECT_NEAR(solve["max_principal"], 7.2e6, 0.1 * 7.2e6);
+  }
+  EXPECT_EQ(r.stats["totals"]["solves"], 3);
+  const auto& v = event["volume"];
+  const Real rest =
+      v["before"].get<Real>() - v["removed"].get<Real>() - v["dust"].get<Real>() + v["remeshing"].get<Real>();
+  EXPECT_NEAR(v["after"], rest, 1e-12 * rest);
+  for (const auto& frame : r.stats["frames"]) EXPECT_EQ(frame["valid"], frame["bodies"]);
+}
+
 TEST(AppliedLoads, ALoadBesideTheBodyIsRefusedWithItsBody) {
   const std::string text = kFreeBar + end_load(1.2, "force = [2500, 0, 0]");
   try {
