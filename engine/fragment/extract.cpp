@@ -127,7 +127,8 @@ SurfaceMesh extract_solid(const Carving& carving, const Components& components, 
   const SurfaceMesh &body = carving.body().mesh(), &slab = carving.slab().mesh;
   SurfaceMesh mesh;
   match_channels(body, mesh);
-  mesh.triangles.reserve(solid.faces);
+  mesh.triangles.reserve(solid.faces), mesh.faces.reserve(solid.faces);
+  for (CornerChannel& c : mesh.channels) c.value.reserve(c.width() * solid.faces);
   std::size_t next = 0;
   const auto add_part = [&] {
     const std::uint32_t i = parts[next++];

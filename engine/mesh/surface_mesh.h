@@ -29,6 +29,9 @@ struct FaceAttributes {
     kind.resize(n, FaceKind::kOriginal), crack.resize(n, -1), source.resize(n, -1), side.resize(n, 0),
         material.resize(n, 0);
   }
+  void reserve(std::size_t n) {
+    kind.reserve(n), crack.reserve(n), source.reserve(n), side.reserve(n), material.reserve(n);
+  }
   void push_back_from(const FaceAttributes& other, std::size_t i) {
     kind.push_back(other.kind[i]), crack.push_back(other.crack[i]), source.push_back(other.source[i]),
         side.push_back(other.side[i]), material.push_back(other.material[i]);
