@@ -18,12 +18,13 @@ struct Rung {
 constexpr Rung kLadder[kRungCount] = {{0, 1, 1}, {0.5, 1, 1}, {0.8, 1, 1}, {1, 1, 1}, {1, 0.8, 2.0 / 3}};
 
 // Steering deflects a crack from the field, so the far steering that brings badly aligned fronts together is only used
-// where the near one failed.
+// where the near one failed; so is the tension that keeps a front from folding in a field rougher than the sheet.
 struct Retreat {
   int steps;         // to take back
   Real range, full;  // of h: Growth::steer_range, steer_full
+  int tension;       // Growth::tension
 };
-constexpr Retreat kRetreats[] = {{12, 16, 6}, {24, 16, 6}, {1 << 20, 24, 9}};
+constexpr Retreat kRetreats[] = {{12, 16, 6, 1}, {24, 16, 6, 1}, {24, 16, 6, 6}, {1 << 20, 24, 9, 6}};
 constexpr int kSaveEvery = 3;  // steps
 
 bool any_node(const Growth& g, NodeState s) {
@@ -124,7 +125,7 @@ bool Attempt::retreat() {
   const Saved saved = history_.back();
   history_.pop_back();  // step() saves it again
   growth_.restart(saved.sheet);
-  growth_.steer_range = r.range, growth_.steer_full = r.full;
+  growth_.steer_range = r.range, growth_.steer_full = r.full, growth_.tension = r.tension;
   steps_ = saved.step;
   ended_ = spiral_ = false;
   stopped_.reset();
@@ -188,6 +189,7 @@ GrowthResult Attempt::finish() {
   GrowthResult result;
   result.steps = steps_;
   result.ladder_level = level_;
+  result.retreats = static_cast<int>(retreats_);
   judge(result);
   if (result.outcome == GrowthOutcome::kFailed) return result;
   improve_inside(g.sheet);

@@ -89,14 +89,16 @@ struct FrontNode {
 // A front has a line tension: it does not follow bends of the field sharper than the sheet resolves. Without this,
 // fields that no surface can follow (not integrable) corrugate the front until the sheet folds.
 void smooth_normals(Growth& g) {
-  for (const FrontLoop& loop : g.loops) {
-    std::vector<Vec3> normal(loop.size());
-    const auto at = [&](std::size_t i) { return g.sheet.normal[loop[i % loop.size()]]; };
-    for (std::size_t i = 0; i < loop.size(); ++i)
-      normal[i] = normalized(at(i + loop.size() - 1) + 2.0 * at(i) + at(i + 1));
-    for (std::size_t i = 0; i < loop.size(); ++i)
-      if (g.sheet.state[loop[i]] == NodeState::kActive && norm2(normal[i]) > 0) g.sheet.normal.set(loop[i], normal[i]);
-  }
+  for (const FrontLoop& loop : g.loops)
+    for (int pass = 0; pass < g.tension; ++pass) {
+      std::vector<Vec3> normal(loop.size());
+      const auto at = [&](std::size_t i) { return g.sheet.normal[loop[i % loop.size()]]; };
+      for (std::size_t i = 0; i < loop.size(); ++i)
+        normal[i] = normalized(at(i + loop.size() - 1) + 2.0 * at(i) + at(i + 1));
+      for (std::size_t i = 0; i < loop.size(); ++i)
+        if (g.sheet.state[loop[i]] == NodeState::kActive && norm2(normal[i]) > 0)
+          g.sheet.normal.set(loop[i], normal[i]);
+    }
 }
 
 // The nearest front node that faces `a`, or nothing.

@@ -32,6 +32,7 @@ struct Growth {
   // second distance they head straight for each other.
   Real steer_range = 9, steer_full = 1.5;
   bool steered = false;  // some front did
+  int tension = 1;       // passes of smoothing of the crack normals along the front in each step
   std::vector<Rival> rivals;
   Vec3 seed_normal;
   Real reference_stress = 0;  // Pa, the stress that gives the nominal step length

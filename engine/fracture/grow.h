@@ -51,6 +51,7 @@ struct GrowthResult {
   GrowthOutcome outcome = GrowthOutcome::kFailed;
   CrackSheet sheet;
   int ladder_level = 0;  // the rung this is the result of
+  int retreats = 0;      // times its front went back to steer from farther away, under more tension
   int steps = 0;
   Real area = 0;    // of the sheet part inside the body, m^2
   Real length = 0;  // of the sheet's trace on the body's surface, m
