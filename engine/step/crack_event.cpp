@@ -62,8 +62,7 @@ Obstacles CrackEvent::obstacles_in(const Piece& piece, std::size_t left_out) con
 GrowthOptions CrackEvent::growth_options(Piece& piece, const CrackRecord& record, const Obstacles& obstacles,
                                          CutResult& accepted) {
   GrowthOptions o;
-  // A guided crack asks no stress, so no wall is too thin for it.
-  o.edge_length = record.cause == CrackCause::kGuide ? solid_.edge_length() : solid_.crack_edge_length(record.seed);
+  o.edge_length = record.edge_length;
   o.propagation_strength = options_.fields.propagation_strength->upper();
   o.propagation_field = options_.fields.propagation_strength.get();
   o.thickness = options_.fields.crack_thickness->upper();
@@ -224,7 +223,7 @@ void CrackEvent::resume_crack_of(std::int32_t id, const CrackField& field, bool 
     const CrackSheet sheet = at->sheet;
     CrackRecord record;
     record.id = next_id_, record.cause = CrackCause::kResumed, record.seed = sheet.position[0],
-    record.stress = sheet.reference_stress;
+    record.stress = sheet.reference_stress, record.edge_length = solid_.edge_length();
     Grown grown = grow(pieces_[i], record, k, [&](const TriangleBvh& body, const GrowthOptions& options) {
       return resume_crack(body, field, sheet, options);
     });
@@ -262,6 +261,18 @@ bool CrackEvent::may_start(const CrackSeed& seed) const {
          std::none_of(solid_.partial.begin(), solid_.partial.end(), stopped_close_to);
 }
 
+CrackEvent::Grown CrackEvent::start_in(Piece& piece, const CrackField& field, const CrackSeed& seed,
+                                       CrackRecord& record) {
+  Grown grown = grow(piece, record, kNoSheet, [&](const TriangleBvh& body, const GrowthOptions& options) {
+    return grow_crack(body, field, seed, options);
+  });
+  if (record.cause != CrackCause::kGuide) break_ligament(piece, field, grown, record, kNoSheet);
+  return grown;
+}
+
+// In a bent wall the stress of the uncracked body changes its sign half-way through. Edges as long as the wall is thick
+// may put all of a front's nodes into the compressed half; fine ones stop at the neutral plane, which a running crack,
+// like a coarse front, goes over. So a crack counts as stopped when it stops with either.
 void CrackEvent::start(const CrackField& field, std::span<const CrackSeed> seeds, CrackCause cause) {
   for (const CrackSeed& seed : seeds) {
     // A seed that no sheet can start from is soon told from one that can, so it counts less.
@@ -275,11 +286,16 @@ void CrackEvent::start(const CrackField& field, std::span<const CrackSeed> seeds
     ++tried_;
     CrackRecord record;
     record.id = next_id_++, record.cause = cause, record.seed = seed.position, record.stress = seed.stress.value;
-    Grown grown = grow(pieces_[index], record, kNoSheet, [&](const TriangleBvh& body, const GrowthOptions& options) {
-      return grow_crack(body, field, seed, options);
-    });
+    record.edge_length = solid_.edge_length();
+    Grown grown = start_in(pieces_[index], field, seed, record);
+    const Real finer = solid_.crack_edge_length(seed.position);
     // The depth at which a guided crack stops is meant.
-    if (cause != CrackCause::kGuide) break_ligament(pieces_[index], field, grown, record, kNoSheet);
+    if (cause != CrackCause::kGuide && finer < record.edge_length && grown.result.outcome != GrowthOutcome::kComplete) {
+      CrackRecord second = record;
+      second.edge_length = finer;
+      if (Grown again = start_in(pieces_[index], field, seed, second); again.result.outcome == GrowthOutcome::kComplete)
+        grown = std::move(again), record = std::move(second);
+    }
     commit(index, std::move(grown), record, kNoSheet);
     cracks_ += record.outcome != "rejected";
     result_.cracks.push_back(std::move(record));

@@ -52,6 +52,8 @@ class CrackEvent {
                                CutResult& accepted);
   // Grows with the cut as the ladder's last test. `left_out`: the piece's stopped crack that grows on, or kNoSheet.
   Grown grow(Piece& piece, CrackRecord& record, std::size_t left_out, const Grow& grow);
+  // From a seed, with edges of record.edge_length; the ligament of one that stops may fail.
+  Grown start_in(Piece& piece, const CrackField& field, const CrackSeed& seed, CrackRecord& record);
   // Lets the ligament of a stopped crack fail where it cannot bear the load.
   void break_ligament(Piece& piece, const CrackField& field, Grown& grown, CrackRecord& record, std::size_t left_out);
   // Makes the crack part of the event, in the place of the stopped crack `left_out`.

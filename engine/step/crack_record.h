@@ -22,6 +22,7 @@ struct CrackRecord {
   std::string outcome, reason;
   int ladder_level = 0, steps = 0;
   Rungs rungs;                  // why each failed
+  Real edge_length = 0;         // of the sheet, m: the mesh's, or a finer one where a wall asks for it
   Real net_section_stress = 0;  // mean tension the rest of the section would bear, Pa; 0: not asked
   Real area = 0;                // inside the body, m^2
   Real length = 0;              // of its trace on the surface, m

@@ -43,9 +43,8 @@ class Solid {
   Real mesh_volume();  // m^3
   Real diagonal();     // of the bounding box, m
   Real thickness();    // 2 volume / area, m: of a plate its thickness, of a ball two thirds of its radius
-  // Edge length of a crack's sheet that passes near x, m: the mesh's, or shorter where the wall is thin, so that
-  // several rows of it lie between the wall's two sides. With rows as long as the wall is thick a bending crack's first
-  // nodes would already lie in the compressed half, and it would stop before it starts.
+  // Edge length that puts several rows of a crack's sheet between the two sides of the wall near x, m: the mesh's, or a
+  // shorter one.
   Real crack_edge_length(const Vec3& x);
   const std::vector<std::uint32_t>& twins();
   const TriangleBvh& bvh();

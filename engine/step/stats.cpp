@@ -55,6 +55,7 @@ Json crack_json(const CrackRecord& c) {
          {"outcome", c.outcome},
          {"ladder_level", c.ladder_level},
          {"steps", c.steps},
+         {"edge_length", c.edge_length},
          {"area", c.area},
          {"length", c.length},
          {"removed_volume", c.removed_volume},
