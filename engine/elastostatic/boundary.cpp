@@ -1,5 +1,7 @@
 #include "engine/elastostatic/boundary.h"
 
+#include "kernels/quadrature/gauss.h"
+
 namespace sherd {
 
 Boundary::Boundary(const SurfaceMesh& surface, const QuadratureOptions& options) : mesh(surface) {
@@ -14,6 +16,16 @@ Boundary::Boundary(const SurfaceMesh& surface, const QuadratureOptions& options)
     for (const std::uint32_t v : mesh.triangles[t]) vertex_area[v] += panels[t].area / 3;
     area += panels[t].area;
   }
+}
+
+Vec3Column far_points(const std::vector<PanelFrame>& panels) {
+  Vec3Column out(3 * panels.size());
+  for (std::size_t t = 0; t < panels.size(); ++t)
+    for (std::size_t q = 0; q < 3; ++q) {
+      const auto& v = panels[t].vertex;
+      out.set(3 * t + q, v[0] * kGauss3[q].a + v[1] * kGauss3[q].b + v[2] * kGauss3[q].c);
+    }
+  return out;
 }
 
 }  // namespace sherd

@@ -26,4 +26,7 @@ struct Boundary {
   Boundary(const SurfaceMesh& surface, const QuadratureOptions& options);
 };
 
+// The points that stand for panels far away, of kGauss3: three a panel, panel by panel, m.
+Vec3Column far_points(const std::vector<PanelFrame>& panels);
+
 }  // namespace sherd

@@ -17,17 +17,6 @@ Real bulk(const Boundary& b) {
   return 20 * signed_volume(b.mesh) / (b.area * bounding_box(b.mesh).diagonal());
 }
 
-// The points that stand for the panels far away: three a panel, panel by panel.
-Vec3Column far_points(const Boundary& b) {
-  Vec3Column out(3 * b.panels.size());
-  for (std::size_t t = 0; t < b.panels.size(); ++t)
-    for (std::size_t q = 0; q < 3; ++q) {
-      const auto& v = b.panels[t].vertex;
-      out.set(3 * t + q, v[0] * kGauss3[q].a + v[1] * kGauss3[q].b + v[2] * kGauss3[q].c);
-    }
-  return out;
-}
-
 }  // namespace
 
 bool is_bulky(const Boundary& b) {
@@ -46,7 +35,7 @@ FastOperator::FastOperator(const Boundary& b, const Reconstruction& r, Real nu, 
   const LaneConstants c = lane_constants(nu);
   fmm::PlanOptions options;
   options.tolerance = o.tolerance, options.arithmetic = o.arithmetic, options.leaf_size = o.leaf_size;
-  const Vec3Column sources = far_points(b), targets = testing.points();
+  const Vec3Column sources = far_points(b.panels), targets = testing.points();
   plan_ =
       std::make_unique<fmm::Plan>(fmm::PairSum::kElasticValue, fmm::PairConstants<double>{c.one, c.two, c.angle, 0, 0},
                                   fmm::Points{sources, targets, &normals, nullptr}, options);

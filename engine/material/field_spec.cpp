@@ -7,16 +7,10 @@
 #include "engine/material/grain_field.h"
 #include "engine/material/noise_field.h"
 #include "kernels/core/error.h"
+#include "kernels/core/overload.h"
 
 namespace sherd {
 namespace {
-
-template <class... F>
-struct Overload : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overload(F...) -> Overload<F...>;
 
 class LayerField final : public ScalarField {
  public:

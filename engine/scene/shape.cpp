@@ -3,16 +3,10 @@
 
 #include "engine/mesh/shapes.h"
 #include "engine/scene/load_body.h"
+#include "kernels/core/overload.h"
 
 namespace sherd {
 namespace {
-
-template <class... F>
-struct Overload : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overload(F...) -> Overload<F...>;
 
 constexpr std::array<std::string_view, 9> kKinds{"box",      "sphere",       "hollow_sphere", "plate", "bar",
                                                  "cylinder", "dinner_plate", "goblet",        "torus"};

@@ -6,7 +6,6 @@
 #include "engine/elastostatic/lane_kernels.h"
 #include "kernels/core/parallel.h"
 #include "kernels/fmm/plan.h"
-#include "kernels/quadrature/gauss.h"
 
 namespace sherd {
 namespace {
@@ -49,6 +48,7 @@ Somigliana::Somigliana(const Boundary& b, const std::vector<ElementField>& eleme
     : boundary_(b),
       elements_(elements),
       material_(material),
+      position_(far_points(b.panels)),
       near2_(squared_reach(b, near_edges(options))),
       middle2_(squared_reach(b, middle_edges(options))),
       search_(b.centroid, middle2_) {
@@ -56,9 +56,7 @@ Somigliana::Somigliana(const Boundary& b, const std::vector<ElementField>& eleme
     const PanelFrame& f = b.panels[t];
     least2_ = std::min(least2_, 1e-12 * f.area);
     for (std::size_t q = 0; q < 3; ++q) {
-      const TrianglePoint& p = kGauss3[q];
       const ElementField::Source& s = elements[t].far()[q];
-      position_.push_back(f.vertex[0] * p.a + f.vertex[1] * p.b + f.vertex[2] * p.c);
       density_.push_back(s.density), guenter_.push_back(s.guenter), normal_.push_back(f.normal);
       for (std::size_t i = 0; i < 9; ++i) gradient_[i].push_back(s.gradient.m[i / 3][i % 3]);
     }

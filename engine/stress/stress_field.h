@@ -12,7 +12,7 @@ class StressField {
   virtual ~StressField() = default;
   // Total stress per corner of the surface (SurfaceRecovery::corners()), Pa.
   virtual const std::vector<Sym3>& corner_stress() const = 0;
-  // At points of faces of the solved mesh, one face each, Pa. Parallel.
+  // At points of faces of the solved mesh, one face each, Pa; many at once cost less than one by one.
   virtual void on_faces(const Vec3Column& points, std::span<const std::uint32_t> face, std::span<Sym3> out) const = 0;
   // At points of the closed solid, right up to the surface, Pa. Parallel.
   virtual void evaluate(const Vec3Column& points, std::vector<Sym3>& out) const = 0;
