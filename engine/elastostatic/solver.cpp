@@ -6,6 +6,7 @@
 
 #include "engine/elastostatic/direct_assembly.h"
 #include "engine/mesh/thickness.h"
+#include "kernels/core/trace.h"
 #include "kernels/quadrature/gauss.h"
 
 namespace sherd {
@@ -79,6 +80,7 @@ ElasticBody::ElasticBody(const SurfaceMesh& mesh, const Elastic& material, const
 
 template <class Scalar>
 void ElasticBody::build_dense() {
+  const TraceScope scope("assemble");
   auto dense = std::make_unique<DenseOperator<Scalar>>(boundary_.mesh.vertex_count());
   assemble_direct(boundary_, reconstruction_, material_.nu, testing_, *dense);
   make_factors_ = [this, &a = *dense] { return std::make_unique<FactoredInverse>(a, modes_, cavities_); };
@@ -87,6 +89,7 @@ void ElasticBody::build_dense() {
 }
 
 void ElasticBody::build_fast() {
+  const TraceScope scope("assemble");
   FastOptions o = options_.fast;
   if (o.tolerance <= 0) o.tolerance = far_tolerance(boundary_);
   // Rounding must stay below the residual asked for, or the iteration stalls: single precision has 1e-6 of the
@@ -100,6 +103,7 @@ void ElasticBody::build_fast() {
 
 // A coarse space costs products with the operator: the fast one first tries without, unless walls are slender.
 void ElasticBody::precondition() {
+  const TraceScope scope("precondition");
   inverse_blocks_ = inverse_diagonal_blocks(*operator_);
   completed_ = std::make_unique<CompletedOperator>(*operator_, modes_, &cavities_);
   const std::size_t n = operator_->size();
@@ -202,6 +206,11 @@ std::size_t ElasticBody::bytes() const {
          (deflation_ ? n * deflation_->dimension() * sizeof(Real) : 0);
 }
 
+Vec3Column ElasticBody::right_hand_side(const Load& load, const ParticularSolution& particular) const {
+  const TraceScope scope("right-hand side");
+  return testing_.apply(load_potential(boundary_, load, particular, material_, options_.quadrature, testing_.points()));
+}
+
 ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& particular) const {
   ElasticSolution s;
   if (!ready()) {
@@ -209,8 +218,7 @@ ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& p
     return s;
   }
   const std::size_t n = boundary_.mesh.vertex_count();
-  const Vec3Column rhs =
-      testing_.apply(load_potential(boundary_, load, particular, material_, options_.quadrature, testing_.points()));
+  const Vec3Column rhs = right_hand_side(load, particular);
   std::vector<Real> b(3 * n), x(3 * n, 0);
   Real size2 = 0;
   for (std::size_t i = 0; i < n; ++i)
@@ -223,7 +231,10 @@ ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& p
     s.reason = "the load is not finite";
     return s;
   }
-  s.krylov = iterate(b, x, s.factored);
+  {
+    const TraceScope scope("iterate");
+    s.krylov = iterate(b, x, s.factored);
+  }
   // The rigid part of the solution is arbitrary; its coefficient measures what did not balance.
   const std::array<Real, 6> c = modes_.coefficients(x);
   modes_.add(x, c, -1);

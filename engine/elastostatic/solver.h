@@ -85,6 +85,7 @@ class ElasticBody {
   void deflate() const;
   // Makes the factors when they are not there yet; false when they do not fit max_bytes or a pivot vanished.
   bool factor() const;
+  Vec3Column right_hand_side(const Load& load, const ParticularSolution& particular) const;
   KrylovResult iterate(std::span<const Real> b, std::span<Real> x, bool& factored) const;
   Real strained_size(std::span<const Real> homogeneous, const ParticularSolution& particular) const;
 

@@ -79,7 +79,7 @@ GrowthOptions CrackEvent::growth_options(Piece& piece, const CrackRecord& record
 }
 
 CutResult CrackEvent::cut_piece(const CutBody& body, const CrackSheet& sheet, std::int32_t crack) {
-  const Stopwatch watch(result_.seconds.cut);
+  const Stopwatch watch(result_.seconds.cut, "cut");
   CutResult refused;
   SlabOptions s;
   s.thickness = options_.fields.crack_thickness->upper(), s.field = options_.fields.crack_thickness.get();
@@ -101,7 +101,7 @@ CrackEvent::Grown CrackEvent::grow(Piece& piece, CrackRecord& record, std::size_
   Grown grown;
   const Real cutting = result_.seconds.cut;
   const bool went = guarded(record.reason, [&] {
-    const Stopwatch watch(result_.seconds.grow);
+    const Stopwatch watch(result_.seconds.grow, "grow crack");
     fault_point("event.grow");
     const Obstacles obstacles = obstacles_in(piece, left_out);
     grown.result = grow(piece.tree(), growth_options(piece, record, obstacles, grown.cut));
@@ -119,7 +119,7 @@ void CrackEvent::break_ligament(Piece& piece, const CrackField& field, Grown& gr
   NetSection net;
   std::string reason;
   const bool went = guarded(reason, [&] {
-    const Stopwatch watch(result_.seconds.grow);
+    const Stopwatch watch(result_.seconds.grow, "net section");
     const Obstacles obstacles = obstacles_in(piece, left_out);
     net = net_section(piece.tree(), field, grown.result.sheet, growth_options(piece, record, obstacles, through));
   });
@@ -340,7 +340,7 @@ FragmentShape CrackEvent::finished(Piece& piece) {
   shape.edge_length = solid_.edge_length();
   if (piece.was_cut) {
     shape.edge_length = piece_edge_length(*piece.mesh, solid_.root());
-    const Stopwatch watch(result_.seconds.remesh);
+    const Stopwatch watch(result_.seconds.remesh, "refit");
     SurfaceMesh out;
     RefitReport report;
     if (!guarded(report.reason, [&] { report = refit_piece(*piece.mesh, solid_.root(), out); })) report.ok = false;

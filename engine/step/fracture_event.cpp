@@ -1,5 +1,7 @@
 #include "engine/step/fracture_event.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 
@@ -44,19 +46,20 @@ void solve(Solid& solid, const MassProperties& mass, const Elastic& material, co
   record.relief = norm(s.load.body_force.constant) * mass.volume / record.force;
   const ElasticBody* elastic = nullptr;
   {
-    const Stopwatch watch(seconds.assemble);
+    const Stopwatch watch(seconds.assemble, "elastic body",
+                          [&] { return fmt::format("{} triangles", record.triangles); });
     elastic = &solid.elastic(material, options.elastic);
   }
   record.galerkin_vertices = elastic->testing().galerkin_count();
   s.particular = elastic->particular(s.load);
   {
-    const Stopwatch watch(seconds.solve);
+    const Stopwatch watch(seconds.solve, "solve");
     s.solution = elastic->solve(s.load, *s.particular);
   }
   record.krylov = s.solution.krylov, record.incompatibility = s.solution.incompatibility;
   record.factored = s.solution.factored, record.reason = s.solution.reason;
   if (!s.solution.ok) return;
-  const Stopwatch watch(seconds.stress);
+  const Stopwatch watch(seconds.stress, "stress");
   s.state = std::make_unique<StressState>(*elastic, solid.recovery(), solid.bvh(), s.load, *s.particular, s.solution);
   record.strongest = strongest_point(solid.mesh(), solid.recovery(), *s.state, *options.fields.strength);
   s.seeds = find_seeds(solid.mesh(), solid.recovery(), *s.state, *options.fields.strength);

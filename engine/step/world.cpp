@@ -52,7 +52,7 @@ std::vector<World::HeldLoad> held_loads(const Scene& scene, std::size_t scene_bo
 World::World(const Scene& s, int thread_count) : scene(s), threads(thread_count) {
   record.scene = s.file.filename().string();
   record.threads = thread_count;
-  const Stopwatch watch(record.prepare_seconds);
+  const Stopwatch watch(record.prepare_seconds, "prepare");
   for (std::size_t i = 0; i < s.bodies.size(); ++i) add_body(i);
   ground = {s.ground.enabled, s.ground.height, s.ground.restitution, s.ground.friction};
   rigid.dt = s.time_step, rigid.gravity = s.gravity;
@@ -130,7 +130,7 @@ const MeshRecord& World::record_mesh(std::size_t i) {
 }
 
 void World::certify_frame(std::size_t index) {
-  const Stopwatch watch(record.certify_seconds);
+  const Stopwatch watch(record.certify_seconds, "certify");
   FrameRecord frame;
   frame.index = index, frame.time = time();
   Real clean = 0;

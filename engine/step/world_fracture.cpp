@@ -276,7 +276,7 @@ void World::advance() {
   StepRecord step;
   RigidStats stats;
   {
-    const Stopwatch watch(step.rigid_seconds);
+    const Stopwatch watch(step.rigid_seconds, "rigid step");
     rigid_step(bodies, ground, rigid, cache, rigid_state, contacts, stats);
   }
   ++steps;
@@ -285,7 +285,7 @@ void World::advance() {
   step.fields_built = stats.contact.fields_built;
   step.contact_iterations = stats.iterations, step.asleep = stats.asleep;
   {
-    const Stopwatch watch(step.fracture_seconds);
+    const Stopwatch watch(step.fracture_seconds, "fracture");
     // By id: bodies shift while fragments replace their parents, and fragments of this step carry no contact yet.
     struct Due {
       BodyId id;

@@ -5,6 +5,7 @@
 #include "engine/stress/layer_gradient.h"
 #include "engine/stress/near_surface.h"
 #include "kernels/core/parallel.h"
+#include "kernels/core/trace.h"
 #include "kernels/fundamental/kelvin.h"
 #include "kernels/quadrature/gauss.h"
 
@@ -126,6 +127,7 @@ void StressState::on_faces(const Vec3Column& points, std::span<const std::uint32
 }
 
 void StressState::evaluate(const Vec3Column& points, std::vector<Sym3>& out) const {
+  const TraceScope scope("stress at points");
   out.resize(points.size());
   std::vector<SurfaceBlend> blend(points.size());
   parallel_for(points.size(), 8,

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "kernels/core/thread_sanitizer.h"
+#include "kernels/core/trace.h"
 
 namespace sherd {
 namespace {
@@ -66,10 +68,13 @@ void parallel_for_chunks(std::size_t n, std::size_t grain, const std::function<v
     run(0);
     return;
   }
+  const char* const name = TraceScope::innermost();
   char handed_out, ended;
   happens_before(&handed_out);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks, 1), [&](const tbb::blocked_range<std::size_t>& r) {
     happens_after(&handed_out);
+    std::optional<TraceScope> scope;
+    if (name && !TraceScope::innermost()) scope.emplace(name);
     for (std::size_t c = r.begin(); c != r.end(); ++c) run(c);
     happens_before(&ended);
   });

@@ -10,6 +10,7 @@
 
 #include "kernels/core/error.h"
 #include "kernels/core/parallel.h"
+#include "kernels/core/trace.h"
 #include "kernels/fmm/accuracy.h"
 #include "kernels/fmm/evaluator.h"
 #include "kernels/fmm/rbf.h"
@@ -251,7 +252,10 @@ const PlanStatistics& Plan::statistics() const {
 }
 
 void Plan::apply(std::span<const double> strengths, std::span<double> out, std::size_t sets) const {
-  impl_->apply(strengths, out, sets, [](TaskGraph::Task, const auto& body) { body(); });
+  impl_->apply(strengths, out, sets, [&](TaskGraph::Task t, const auto& body) {
+    const TraceScope scope(task_name(impl_->schedule->task(t).kind));
+    body();
+  });
 }
 
 std::vector<TaskRecord> Plan::apply_traced(std::span<const double> strengths, std::span<double> out) const {

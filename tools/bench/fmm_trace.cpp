@@ -6,6 +6,7 @@
 
 #include "kernels/core/error.h"
 #include "kernels/core/parallel.h"
+#include "kernels/core/trace.h"
 #include "tools/bench/fmm.h"
 
 namespace sherd::bench {
@@ -14,17 +15,11 @@ namespace {
 using namespace fmm;
 
 void write_chrome(const std::vector<TaskRecord>& records, const std::string& path) {
-  nlohmann::json events = nlohmann::json::array();
+  std::vector<TraceEvent> events;
   for (const TaskRecord& r : records)
-    events.push_back({{"name", r.name},
-                      {"ph", "X"},
-                      {"pid", 1},
-                      {"tid", r.worker},
-                      {"ts", 1e6 * r.begin},
-                      {"dur", 1e6 * (r.end - r.begin)},
-                      {"args", {{"boxes", r.boxes}}}});
+    events.push_back({r.name, fmt::format("{} boxes", r.boxes), r.worker, r.begin, r.end});
   std::ofstream file(path);
-  file << nlohmann::json{{"traceEvents", events}, {"displayTimeUnit", "ms"}}.dump() << '\n';
+  file << chrome_trace(events);
   file.flush();
   if (!file) throw InputError(fmt::format("cannot write {}; choose a folder that exists", path));
 }

@@ -148,7 +148,7 @@ void solve_all(const GenerationOptions& options, GenerationResult& result) {
 GenerationResult run_generations(const Specimen& body, const GenerationOptions& options) {
   GenerationResult result;
   result.shape = body.name;
-  const Stopwatch watch(result.seconds);
+  const Stopwatch watch(result.seconds, "generations");
   result.pieces.push_back(body.mesh());
   const Real root = body.body.volume();
   Real crack_volume = 0, removed = 0;

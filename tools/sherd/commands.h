@@ -20,6 +20,7 @@ int check_command(const CheckOptions& options);
 struct RunOptions {
   std::filesystem::path scene;
   std::filesystem::path out;  // empty: out/NAME for scene NAME.toml
+  std::filesystem::path trace;  // what ran when, Chrome's trace format; empty: none
   int threads = 0;            // 0: all processors
   int frames = 0;             // stop after so many; 0: the scene's duration
   bool render = true;

@@ -34,6 +34,7 @@ void add_run(CLI::App& app, Choice& choice) {
   run->add_option("--frames", choice.run.frames, "Stop after so many frames")->check(CLI::Range(1, 1000000));
   run->add_flag("--no-render", choice.no_render, "No pictures and no movie");
   run->add_flag("--wireframe", choice.run.wireframe, "Draw the edges of the triangles over the bodies");
+  run->add_option("--trace", choice.run.trace, "File for what ran when on which thread (for ui.perfetto.dev)");
   run->add_flag("--quiet", choice.run.quiet, "Only errors");
 }
 

@@ -1,8 +1,12 @@
 #include <algorithm>
 #include <exception>
+#include <fstream>
 #include <limits>
+#include <optional>
 
 #include "engine/step/simulation.h"
+#include "kernels/core/error.h"
+#include "kernels/core/trace.h"
 #include "tools/sherd/commands.h"
 #include "tools/sherd/progress.h"
 #include "tools/sherd/run_writer.h"
@@ -35,10 +39,35 @@ void simulate(Simulation& simulation, RunWriter& writer, std::size_t frame_limit
   }
 }
 
+// Written at the end; the file is opened at the start, so that a wrong path does not cost a run.
+class TraceFile {
+ public:
+  explicit TraceFile(const std::filesystem::path& path) : path_(path) {
+    if (path_.empty()) return;
+    stream_.open(path_, std::ios::binary);
+    if (!stream_) throw InputError(fmt::format("{}: cannot be written; choose a folder that exists", path_.string()));
+    trace_.emplace();
+  }
+  // Says where the trace is; nothing when none was asked for.
+  std::optional<std::string> finish() {
+    if (!trace_) return std::nullopt;
+    stream_ << chrome_trace(trace_->events());
+    stream_.flush();
+    if (!stream_) throw InputError(fmt::format("{}: cannot be written; is the disk full?", path_.string()));
+    return fmt::format("trace:      {}", path_.string());
+  }
+
+ private:
+  std::filesystem::path path_;
+  std::ofstream stream_;
+  std::optional<Trace> trace_;
+};
+
 }  // namespace
 
 int run_command(const RunOptions& options) {
   catch_interrupts();
+  TraceFile trace(options.trace);
   const Scene scene = load_scene(options.scene);
   // Meshes are read and repaired here: nothing is written for a scene that cannot run.
   Simulation simulation(scene, {.threads = options.threads});
@@ -59,6 +88,7 @@ int run_command(const RunOptions& options) {
     failure = std::current_exception();  // what there is so far is written before it goes on
   }
   for (const std::string& line : writer.finish(simulation.stats_json())) progress.note(line);
+  if (const auto line = trace.finish()) progress.note(*line);
   if (failure) std::rethrow_exception(failure);
   if (!interrupted()) return kSuccess;
   progress.note("ended early by a signal; everything so far is on disk");

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "kernels/core/error.h"
+#include "kernels/core/trace.h"
 #include "render/movie.h"
 #include "render/png.h"
 
@@ -56,6 +57,16 @@ void write_text(const fs::path& file, const std::string& text) {
   fs::rename(temporary, file);
 }
 
+void draw(Rasterizer& rasterizer, const Frame& frame, const View& view, const fs::path& file) {
+  Image image;
+  {
+    const TraceScope scope("render");
+    image = rasterizer.render(frame, view);
+  }
+  const TraceScope scope("write picture");
+  write_png(file, image);
+}
+
 }  // namespace
 
 RunWriter::RunWriter(const SceneOutput& output, Real frame_rate, fs::path folder, bool render)
@@ -74,20 +85,23 @@ RunWriter::RunWriter(const SceneOutput& output, Real frame_rate, fs::path folder
 }
 
 void RunWriter::add(const Frame& frame, const View& view) {
-  if (rasterizer_) write_png(folder_ / kFrames / picture_name(frames_), rasterizer_->render(frame, view));
-  if (pieces_) pieces_->add(frame);
+  if (rasterizer_) draw(*rasterizer_, frame, view, folder_ / kFrames / picture_name(frames_));
+  if (pieces_) {
+    const TraceScope scope("write pieces");
+    pieces_->add(frame);
+  }
   ++frames_;
 }
 
 void RunWriter::add_material(const Frame& frame, const View& view) {
-  if (material_rasterizer_)
-    write_png(folder_ / kMaterial / picture_name(frames_ - 1), material_rasterizer_->render(frame, view));
+  if (material_rasterizer_) draw(*material_rasterizer_, frame, view, folder_ / kMaterial / picture_name(frames_ - 1));
 }
 
 void RunWriter::add_movie(const std::string& pictures, const std::string& movie,
                           std::vector<std::string>& results) const {
   results.push_back(fmt::format("frames:     {} ({} pictures)", (folder_ / pictures).string(), frames_));
   if (!output_.movie) return;
+  const TraceScope scope("movie");
   const MovieResult made = encode_movie(folder_ / pictures, kPattern, 0, frame_rate_, folder_ / movie);
   results.push_back(made.made ? fmt::format("movie:      {}", (folder_ / movie).string())
                               : fmt::format("movie:      not made: {}", made.reason));
