@@ -463,6 +463,11 @@ Image Rasterizer::Impl::pass_finish() const {
 Rasterizer::Rasterizer() : impl_(std::make_unique<Impl>()) {}
 Rasterizer::~Rasterizer() = default;
 
+void Rasterizer::forget_meshes() {
+  const Current current(impl_->context);
+  impl_->cache.clear();
+}
+
 Image Rasterizer::render(const Frame& frame, const View& view) {
   check_view(view);
   for (const FrameBody& body : frame.bodies) check_body(frame, body);

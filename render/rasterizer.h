@@ -25,6 +25,8 @@ class Rasterizer {
   // version) and dropped with the first frame that does not show it. One call at a time; any thread may call.
   // Throws InputError for a view or a body that cannot be drawn (no pixels, no direction, not finite, no mesh).
   Image render(const Frame& frame, const View& view);
+  // Drops what was uploaded; the pictures stay the same.
+  void forget_meshes();
 
  private:
   struct Impl;

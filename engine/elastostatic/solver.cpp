@@ -112,13 +112,19 @@ void ElasticBody::precondition() {
       (options_.preconditioning == Preconditioning::kFactored ||
        (options_.preconditioning == Preconditioning::kAuto && (n <= 1500 || (n <= 12000 && slender_))));
   if (factors && factor()) return;
-  if (make_factors_ || slender_ || options_.preconditioning == Preconditioning::kDeflation) deflate();
+  if (make_factors_ || slender_ || options_.coarse_space || options_.preconditioning == Preconditioning::kDeflation)
+    deflate();
 }
 
 void ElasticBody::deflate() const {
   DeflationOptions o = options_.deflation;
   if (!make_factors_) o.max_dimension = std::min<std::size_t>(o.max_dimension, kFastCoarseDimension);
   deflation_ = std::make_unique<Deflation>(*completed_, boundary_, inverse_blocks_, o);
+}
+
+bool ElasticBody::needed_coarse_space() const {
+  const std::lock_guard lock(factoring_);
+  return deflation_ != nullptr;
 }
 
 bool ElasticBody::factor() const {
@@ -211,7 +217,8 @@ Vec3Column ElasticBody::right_hand_side(const Load& load, const ParticularSoluti
   return testing_.apply(load_potential(boundary_, load, particular, material_, options_.quadrature, testing_.points()));
 }
 
-ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& particular) const {
+ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& particular,
+                                   SolutionHistory* history) const {
   ElasticSolution s;
   if (!ready()) {
     s.reason = reason_;
@@ -231,10 +238,12 @@ ElasticSolution ElasticBody::solve(const Load& load, const ParticularSolution& p
     s.reason = "the load is not finite";
     return s;
   }
+  if (history) s.warm = history->guess(b, x);
   {
     const TraceScope scope("iterate");
     s.krylov = iterate(b, x, s.factored);
   }
+  if (history && s.krylov.status == KrylovStatus::kConverged) history->add(b, x);
   // The rigid part of the solution is arbitrary; its coefficient measures what did not balance.
   const std::array<Real, 6> c = modes_.coefficients(x);
   modes_.add(x, c, -1);

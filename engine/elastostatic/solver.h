@@ -11,6 +11,7 @@
 #include "engine/elastostatic/krylov.h"
 #include "engine/elastostatic/rigid_modes.h"
 #include "engine/elastostatic/single_layer.h"
+#include "engine/elastostatic/solution_history.h"
 #include "engine/elastostatic/testing.h"
 
 namespace sherd {
@@ -40,6 +41,9 @@ struct ElasticOptions {
   // kAuto: the most a dense matrix is made for. Bodies that are not bulky take a finer far field and many products.
   std::size_t dense_bulky_unknowns = 6000, dense_unknowns = 12000;
   FastOptions fast;
+  // Make the coarse space of the fast operator with it instead of when the first load needs it: for a body that
+  // needed_coarse_space() before, so that a new operator solves as the old one would have.
+  bool coarse_space = false;
   bool double_storage = false;  // of the dense operator; float storage costs 3e-8 .. 2e-6 of the stress
   std::size_t max_bytes = std::size_t{6} << 30;  // refuse larger operators
 };
@@ -50,6 +54,7 @@ struct ElasticSolution {
   Vec3Column displacement;  // of the homogeneous problem at vertices, m (add particular.displacement for the whole)
   KrylovResult krylov;      // iterations and products of all attempts
   bool factored = false;    // preconditioned by triangular factors
+  bool warm = false;        // started from earlier solutions
   // Share of the displacement (rms over the surface, 0 to 1) that is the rigid motion the completion absorbed: what of
   // the load did not balance, and the discretisation's own imbalance.
   Real incompatibility = 0;
@@ -66,13 +71,17 @@ class ElasticBody {
   // What the solver subtracts: the body force's polynomial and the mean stress of what remains, so that uniformly
   // stressed bodies are exact on any mesh. Pass it to solve() and to StressState.
   ParticularSolution particular(const Load& load) const;
-  // Deterministic; not converged or not finite is ok = false with the reason.
-  ElasticSolution solve(const Load& load, const ParticularSolution& particular) const;
+  // Deterministic; not converged or not finite is ok = false with the reason. `history`, of solves of this mesh and
+  // material alone: where the iteration starts from, and what a solution is added to.
+  ElasticSolution solve(const Load& load, const ParticularSolution& particular,
+                        SolutionHistory* history = nullptr) const;
+  bool needed_coarse_space() const;
 
   const Boundary& boundary() const { return boundary_; }
   const Elastic& material() const { return material_; }
   const ElasticOptions& options() const { return options_; }
   const LinearOperator& system() const { return *operator_; }  // without completion
+  bool dense() const { return make_factors_ != nullptr; }      // a dense matrix, or the fast multipole method
   std::size_t bytes() const;                                   // of the operator, its factors and coarse space
   const Reconstruction& reconstruction() const { return reconstruction_; }
   const Testing& testing() const { return testing_; }

@@ -46,6 +46,17 @@ void turn(Growth& g, std::uint32_t v) {
   g.sheet.normal.set(v, crack_normal(g, g.sheet.stress[v].direction, g.sheet.normal[v]));
 }
 
+// The answers are of no use: see GrowthOptions::ask_everywhere.
+void ask_all(Growth& g) {
+  Vec3Column points;
+  for (std::size_t v = 0; v < g.sheet.state.size(); ++v)
+    if (g.sheet.state[v] != NodeState::kExited && g.body.inside(g.sheet.position[v]))
+      points.push_back(g.sheet.position[v]);
+  std::vector<PrincipalStress> unused;
+  if (points.size() > 0) g.field.principal_stress(points, unused);
+  g.stresses_asked += points.size();
+}
+
 void ask_field(Growth& g) {
   Vec3Column points;
   FrontLoop nodes;
@@ -59,6 +70,11 @@ void ask_field(Growth& g) {
       }
       nodes.push_back(v), points.push_back(g.sheet.position[v]);
     }
+  g.stresses_asked += nodes.size();
+  if (g.options.ask_everywhere) ask_all(g);
+  std::size_t within = 0;
+  for (const NodeState s : g.sheet.state) within += s != NodeState::kExited;
+  g.stresses_spared += g.options.ask_everywhere ? 0 : within - nodes.size();
   if (nodes.empty()) return;
   std::vector<PrincipalStress> stress;
   g.field.principal_stress(points, stress);

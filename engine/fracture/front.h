@@ -38,6 +38,7 @@ struct Growth {
   Real reference_stress = 0;  // Pa, the stress that gives the nominal step length
   SheetMesh sheet;
   std::vector<FrontLoop> loops;
+  std::size_t stresses_asked = 0, stresses_spared = 0;  // of GrowthResult
 
   // What is_clear() found, per node pair, while neither moves: the same border edges are asked in every step.
   struct Clear {

@@ -14,6 +14,7 @@ GrowthResult climb_ladder(const TriangleBvh& body, const CrackField& field, cons
   result.reason = check_options(body, options);
   if (!result.reason.empty()) return result;
   Rungs rungs;
+  std::size_t asked = 0, spared = 0;
   for (int level = 0; level < kRungCount; ++level) {
     std::string& reason = rungs.reason[static_cast<std::size_t>(level)];
     Attempt attempt(body, field, options, level);
@@ -29,10 +30,12 @@ GrowthResult climb_ladder(const TriangleBvh& body, const CrackField& field, cons
       result = attempt.finish();
     } while (result.outcome == GrowthOutcome::kFailed && attempt.retreat());
     reason = result.reason;
+    asked += attempt.growth().stresses_asked, spared += attempt.growth().stresses_spared;
     if (result.outcome != GrowthOutcome::kFailed) break;
   }
   result.reason = rungs.reason[0];
   result.rungs = std::move(rungs);
+  result.stresses_asked = asked, result.stresses_spared = spared;
   return result;
 }
 

@@ -31,6 +31,9 @@ struct GrowthOptions {
   // When given, they take the place of the numbers above. Borrowed: they outlive the growth.
   const ScalarField* propagation_field = nullptr;
   const ScalarField* thickness_field = nullptr;
+  // Ask for the stress at every node of the sheet inside the body, at every step, though only that of a moving front is
+  // used: what growth would cost without keeping it (Skip::kFrontStress).
+  bool ask_everywhere = false;
   const Obstacles* obstacles = nullptr;  // nodes that reach one are blocked there: a T-junction
   // The last test of a rung of the ladder, asked with the sheet as it will be returned, complete or arrested: a text
   // refuses it with that reason and the next rung is tried. When given, it takes the place of the test that the slab
@@ -53,8 +56,10 @@ struct GrowthResult {
   int ladder_level = 0;  // the rung this is the result of
   int retreats = 0;      // times its front went back to steer from farther away, under more tension
   int steps = 0;
-  Real area = 0;    // of the sheet part inside the body, m^2
-  Real length = 0;  // of the sheet's trace on the body's surface, m
+  std::size_t stresses_asked = 0;   // of the field, in all attempts
+  std::size_t stresses_spared = 0;  // nodes of a sheet within the body not asked for, summed over the steps
+  Real area = 0;                    // of the sheet part inside the body, m^2
+  Real length = 0;                  // of the sheet's trace on the body's surface, m
   std::vector<std::int32_t>
       met;             // cracks at which nodes are blocked, ascending: once those are cut, the crack may go on
   std::string reason;  // of a rejection or failure; with ladder_level > 0 why the true field failed

@@ -98,6 +98,9 @@ void read_world(TableReader& root, Scene& scene) {
     f.dust = static_cast<SceneDust>(r.choice("dust", kDust, 0));
     f.speed = r.number("speed", {0.05, 1}, f.speed);
   });
+  section(root, "skip", [&](TableReader& r) {
+    for (const SkipSwitch& s : kSkipSwitches) scene.skip.set(s.skip, r.flag(s.key, scene.skip[s.skip]));
+  });
 }
 
 // By name, since indices would silently mean another body after an edit.

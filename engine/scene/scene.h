@@ -13,6 +13,7 @@
 #include "engine/material/material.h"
 #include "engine/mesh/load.h"
 #include "engine/mesh/surface_mesh.h"
+#include "engine/scene/skip.h"
 
 namespace sherd {
 
@@ -191,6 +192,7 @@ struct Scene {
   SceneContact contact;
   SceneSolver solver;
   SceneFracture fracture;
+  SceneSkip skip;
   SceneCamera camera;
   SceneLight light;
   SceneOutput output;

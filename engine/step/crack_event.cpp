@@ -68,6 +68,7 @@ GrowthOptions CrackEvent::growth_options(Piece& piece, const CrackRecord& record
   o.thickness = options_.fields.crack_thickness->upper();
   o.thickness_field = options_.fields.crack_thickness.get();
   o.speed = options_.speed;
+  o.ask_everywhere = !options_.skip[Skip::kFrontStress];
   o.obstacles = &obstacles;
   o.accept = [this, &piece, &accepted, id = record.id](const CrackSheet& sheet) {
     accepted = cut_piece(piece.cut_body(), sheet, id);
@@ -99,14 +100,16 @@ CutResult CrackEvent::cut_piece(const CutBody& body, const CrackSheet& sheet, st
 
 CrackEvent::Grown CrackEvent::grow(Piece& piece, CrackRecord& record, std::size_t left_out, const Grow& grow) {
   Grown grown;
-  const Real cutting = result_.seconds.cut;
+  const Real others = result_.seconds.cut + result_.seconds.front;
   const bool went = guarded(record.reason, [&] {
     const Stopwatch watch(result_.seconds.grow, "grow crack");
     fault_point("event.grow");
     const Obstacles obstacles = obstacles_in(piece, left_out);
     grown.result = grow(piece.tree(), growth_options(piece, record, obstacles, grown.cut));
   });
-  result_.seconds.grow -= result_.seconds.cut - cutting;
+  result_.seconds.grow -= result_.seconds.cut + result_.seconds.front - others;
+  result_.skips.done(Skip::kFrontStress, grown.result.stresses_asked);
+  result_.skips.skipped(Skip::kFrontStress, grown.result.stresses_spared);
   if (!went) grown.result.outcome = GrowthOutcome::kFailed, grown.result.reason = record.reason;
   return grown;
 }
@@ -114,7 +117,7 @@ CrackEvent::Grown CrackEvent::grow(Piece& piece, CrackRecord& record, std::size_
 void CrackEvent::break_ligament(Piece& piece, const CrackField& field, Grown& grown, CrackRecord& record,
                                 std::size_t left_out) {
   if (!options_.net_section || grown.result.outcome != GrowthOutcome::kArrested) return;
-  const Real cutting = result_.seconds.cut;
+  const Real others = result_.seconds.cut + result_.seconds.front;
   CutResult through;
   NetSection net;
   std::string reason;
@@ -123,7 +126,7 @@ void CrackEvent::break_ligament(Piece& piece, const CrackField& field, Grown& gr
     const Obstacles obstacles = obstacles_in(piece, left_out);
     net = net_section(piece.tree(), field, grown.result.sheet, growth_options(piece, record, obstacles, through));
   });
-  result_.seconds.grow -= result_.seconds.cut - cutting;
+  result_.seconds.grow -= result_.seconds.cut + result_.seconds.front - others;
   if (!went || !net.complete) return;
   record.net_section_stress = net.stress;
   if (net.stress < net.strength) return;

@@ -9,6 +9,7 @@
 #include "engine/fracture/interior_seed.h"
 #include "engine/step/crack_event.h"
 #include "engine/step/stopwatch.h"
+#include "engine/step/timed_field.h"
 
 namespace sherd {
 namespace {
@@ -33,8 +34,20 @@ std::optional<CrackSeed> seed_inside(Solid& solid, const StressState& state, con
                             {.spacing = kDeep * h, .depth = kDeep * h, .least = std::max(1.0, surface)});
 }
 
+// Body forces this small beside the loads change the stress by less than the solver's tolerance does (1e-4 unless a
+// scene says otherwise); a body that is held still by balanced loads has none, but for rounding.
+bool drop_body_force(Load& load, const Box& box, Real volume, Real force) {
+  constexpr Real kNegligible = 1e-6;
+  const BodyForce& b = load.body_force;
+  Real density = norm(b.constant);
+  for (int k = 0; k < 3; ++k) density += norm(b.linear.row(k)) * box.diagonal();
+  if (density * volume > kNegligible * force) return false;
+  load.body_force = {};
+  return true;
+}
+
 void solve(Solid& solid, const MassProperties& mass, const Elastic& material, const SurfaceLoad& pull,
-           const FractureOptions& options, EventSeconds& seconds, Solved& s, SolveRecord& record) {
+           const FractureOptions& options, EventSeconds& seconds, SkipCounts& skips, Solved& s, SolveRecord& record) {
   record.triangles = solid.mesh().triangle_count();
   record.unknowns = 3 * solid.mesh().vertex_count();
   s.load = make_load(solid.mesh(), mass, pull);
@@ -44,20 +57,28 @@ void solve(Solid& solid, const MassProperties& mass, const Elastic& material, co
     return;
   }
   record.relief = norm(s.load.body_force.constant) * mass.volume / record.force;
+  skips.add(Skip::kZeroTerms, options.skip[Skip::kZeroTerms] &&
+                                  drop_body_force(s.load, bounding_box(solid.mesh()), mass.volume, record.force));
+  skips.add(Skip::kOperators, solid.has_elastic());
   const ElasticBody* elastic = nullptr;
   {
     const Stopwatch watch(seconds.assemble, "elastic body",
                           [&] { return fmt::format("{} triangles", record.triangles); });
-    elastic = &solid.elastic(material, options.elastic);
+    ElasticOptions elastic_options = options.elastic;
+    if (!options.skip[Skip::kFarField]) elastic_options.kind = OperatorKind::kFast;
+    elastic = &solid.elastic(material, elastic_options);
   }
+  skips.add(Skip::kFarField, elastic->dense());
   record.galerkin_vertices = elastic->testing().galerkin_count();
   s.particular = elastic->particular(s.load);
   {
     const Stopwatch watch(seconds.solve, "solve");
-    s.solution = elastic->solve(s.load, *s.particular);
+    s.solution = elastic->solve(s.load, *s.particular, options.skip[Skip::kWarmStart] ? &solid.history : nullptr);
+    solid.needs_coarse_space = elastic->needed_coarse_space();
   }
   record.krylov = s.solution.krylov, record.incompatibility = s.solution.incompatibility;
-  record.factored = s.solution.factored, record.reason = s.solution.reason;
+  record.factored = s.solution.factored, record.warm = s.solution.warm, record.reason = s.solution.reason;
+  skips.add(Skip::kWarmStart, record.warm);
   if (!s.solution.ok) return;
   const Stopwatch watch(seconds.stress, "stress");
   s.state = std::make_unique<StressState>(*elastic, solid.recovery(), solid.bvh(), s.load, *s.particular, s.solution);
@@ -79,13 +100,14 @@ FractureResult break_once(Solid& solid, const MassProperties& mass, const Elasti
   record.round = round;
   Solved solved;
   try {
-    solve(solid, mass, material, pull, options, result.seconds, solved, record);
+    solve(solid, mass, material, pull, options, result.seconds, result.skips, solved, record);
   } catch (const std::exception& e) {  // a broken invariant or memory: this body keeps its shape, the run goes on
     record.solved = false, record.reason = e.what();
   }
-  if (!record.solved) return result;
+  if (!record.solved || options.only_solve) return result;
   CrackEvent event(solid, options, result);
-  const StressCrackField field(*solved.state);
+  const StressCrackField stress(*solved.state);
+  const TimedField field(stress, result.seconds.front);
   const Real most = record.strongest.stress.value;
   if (!solid.partial.empty() && most > options.fields.propagation_strength->lower())
     event.resume(field, record.seeds > 0);
@@ -104,9 +126,10 @@ void add(FractureResult& all, FractureResult&& r) {
   std::move(r.refits.begin(), r.refits.end(), std::back_inserter(all.refits));
   all.remeshing_volume += r.remeshing_volume;
   all.next_crack_id = r.next_crack_id;
+  all.skips += r.skips;
   EventSeconds &s = all.seconds, &t = r.seconds;
   s.assemble += t.assemble, s.solve += t.solve, s.stress += t.stress;
-  s.grow += t.grow, s.cut += t.cut, s.remesh += t.remesh;
+  s.front += t.front, s.grow += t.grow, s.cut += t.cut, s.remesh += t.remesh;
 }
 
 // Solves the pieces of the round before under their part of the load and lets them crack on. False when none did.

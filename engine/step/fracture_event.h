@@ -8,13 +8,15 @@
 #include "engine/material/scalar_field.h"
 #include "engine/mesh/refit.h"
 #include "engine/step/crack_record.h"
+#include "engine/step/skip_counts.h"
 #include "engine/step/solid.h"
 
 namespace sherd {
 
 // Seconds per stage; kept apart from everything that must be the same in every run.
 struct EventSeconds {
-  Real assemble = 0, solve = 0, stress = 0, grow = 0, cut = 0, remesh = 0;
+  // `front`: stress at the fronts of cracks; `grow`: growth without it.
+  Real assemble = 0, solve = 0, stress = 0, front = 0, grow = 0, cut = 0, remesh = 0;
 };
 
 struct FractureOptions {
@@ -32,6 +34,8 @@ struct FractureOptions {
   DustRule dust = DustRule::kDrop;
   std::int32_t first_crack_id = 0;
   int generation = 0;  // of the body, for the records
+  SceneSkip skip;
+  bool only_solve = false;  // start no crack: what solving would cost for a body that may not break
 };
 
 struct FragmentShape {
@@ -52,6 +56,7 @@ struct SolveRecord {
   std::size_t unknowns = 0, galerkin_vertices = 0;  // of the system; vertices with Petrov-Galerkin rows
   Real incompatibility = 0;                         // solver.h
   bool factored = false;                            // preconditioned by triangular factors
+  bool warm = false;                                // started from earlier solutions
   Real force = 0;                                   // sizes of all forces together, N
   Real relief = 0;        // force that inertia balances, of all: 0 for a load that balances by itself
   CrackSeed strongest;    // largest principal stress on the surface in units of the strength
@@ -69,6 +74,7 @@ struct FractureResult {
       0;  // by which the shapes as shown are smaller: notches of stopped cracks, and crumbs they cut off
   std::vector<RefitReport> refits;  // of the pieces cut; one refused keeps the mesh the cut left
   std::int32_t next_crack_id = 0;
+  SkipCounts skips;
   EventSeconds seconds;
 
   bool solved() const { return !solves.empty() && solves[0].solved; }

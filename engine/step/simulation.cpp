@@ -1,5 +1,6 @@
 #include "engine/step/simulation.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/step/framing.h"
@@ -70,6 +71,11 @@ Frame Simulation::snapshot() {
     f.colour = s.colour ? to_colour(*s.colour) : palette(scene_index);
     f.crack_colour = s.crack_colour ? to_colour(*s.crack_colour) : Colour{0.62f, 0.30f, 0.20f};
     frame.bodies.push_back(std::move(f));
+  }
+  for (const FrameBody& b : frame.bodies) {
+    const auto same = [&](const FrameBody& o) { return o.id == b.id && o.mesh_version == b.mesh_version; };
+    const bool there = std::any_of(impl_->last_frame.bodies.begin(), impl_->last_frame.bodies.end(), same);
+    impl_->world.record.skips.add(Skip::kUploads, there && impl_->world.scene.skip[Skip::kUploads]);
   }
   impl_->last_frame = frame;
   return frame;

@@ -51,6 +51,9 @@ class Solid {
   const SurfaceRecovery& recovery();
   // Built with the first call: one material a body.
   const ElasticBody& elastic(const Elastic& material, const ElasticOptions& options);
+  // What solves of this mesh leave to the next: earlier solutions, and whether the operator needed its coarse space.
+  SolutionHistory history;
+  bool needs_coarse_space = false;
   bool has_elastic() const { return elastic_ != nullptr; }
   std::size_t elastic_bytes() const { return elastic_ ? elastic_->bytes() : 0; }
   void drop_elastic() { elastic_.reset(); }  // frees the dense operator

@@ -92,6 +92,7 @@ Json solve_json(const SolveRecord& r) {
          {"products", r.krylov.products},
          {"residual", r.krylov.residual},
          {"factored", r.factored},
+         {"warm", r.warm},
          {"incompatibility", r.incompatibility},
          {"max_principal", r.strongest.stress.value},
          {"max_principal_at", vector_json(r.strongest.position)},
@@ -157,7 +158,7 @@ Json event_json(const EventRecord& e) {
     j["conservation"] = {{"mass", e.mass_error}, {"momentum", e.momentum_error}, {"angular_momentum", e.angular_error}};
   }
   const EventSeconds& s = r.seconds;
-  j["seconds"] = {{"assemble", s.assemble}, {"solve", s.solve}, {"stress", s.stress},
+  j["seconds"] = {{"assemble", s.assemble}, {"solve", s.solve}, {"stress", s.stress}, {"front", s.front},
                   {"grow", s.grow},         {"cut", s.cut},     {"remesh", s.remesh}};
   return j;
 }
@@ -181,14 +182,24 @@ Json totals_json(const RunRecord& r) {
   return j;
 }
 
+Json skips_json(const RunRecord& r) {
+  Json j = Json::object();
+  for (const SkipSwitch& s : kSkipSwitches)
+    j[s.key] = {{"on", r.skip[s.skip]},
+                {"counts", s.counts},
+                {"done", r.skips[s.skip].done},
+                {"skipped", r.skips[s.skip].skipped}};
+  return j;
+}
+
 Json seconds_json(const RunRecord& r) {
   Real rigid = 0, fracture = 0;
   for (const StepRecord& s : r.steps) rigid += s.rigid_seconds, fracture += s.fracture_seconds;
   EventSeconds t;
   for (const EventRecord& e : r.events) {
     const EventSeconds& s = e.result.seconds;
-    t.assemble += s.assemble, t.solve += s.solve, t.stress += s.stress, t.grow += s.grow, t.cut += s.cut,
-        t.remesh += s.remesh;
+    t.assemble += s.assemble, t.solve += s.solve, t.stress += s.stress, t.front += s.front, t.grow += s.grow,
+        t.cut += s.cut, t.remesh += s.remesh;
   }
   return {{"prepare", r.prepare_seconds},
           {"rigid", rigid},
@@ -196,6 +207,7 @@ Json seconds_json(const RunRecord& r) {
           {"assemble", t.assemble},
           {"solve", t.solve},
           {"stress", t.stress},
+          {"front", t.front},
           {"grow", t.grow},
           {"cut", t.cut},
           {"remesh", t.remesh},
@@ -217,6 +229,7 @@ std::string to_json(const RunRecord& r) {
   j["scene"] = r.scene;
   j["messages"] = r.messages;
   j["totals"] = totals_json(r);
+  j["skips"] = skips_json(r);
   j["seconds"] = seconds_json(r);
   j["meshes"] = Json::array();
   for (const MeshRecord& m : r.meshes) j["meshes"].push_back(mesh_json(m));

@@ -8,6 +8,7 @@
 #include "engine/mesh/thickness_resolution.h"
 #include "engine/rigid/step.h"
 #include "engine/step/fracture_event.h"
+#include "engine/step/skip_counts.h"
 
 namespace sherd {
 
@@ -68,6 +69,8 @@ struct RunRecord {
   std::vector<std::string> messages;
   std::vector<MeshRecord> meshes;
   std::vector<StepRecord> steps;
+  SceneSkip skip;  // which switches were on
+  SkipCounts skips;
   std::vector<EventRecord> events;
   std::vector<CertificateRecord> certificates;
   std::vector<FrameRecord> frames;

@@ -52,10 +52,12 @@ std::vector<World::HeldLoad> held_loads(const Scene& scene, std::size_t scene_bo
 World::World(const Scene& s, int thread_count) : scene(s), threads(thread_count) {
   record.scene = s.file.filename().string();
   record.threads = thread_count;
+  record.skip = s.skip;
   const Stopwatch watch(record.prepare_seconds, "prepare");
   for (std::size_t i = 0; i < s.bodies.size(); ++i) add_body(i);
   ground = {s.ground.enabled, s.ground.height, s.ground.restitution, s.ground.friction};
   rigid.dt = s.time_step, rigid.gravity = s.gravity;
+  if (!s.skip[Skip::kSleep]) rigid.sleep_speed = 0;
   pending = record.messages;
   start_box = world_box();
   for (const Body& b : bodies) record.start_volume += b.mass.volume;

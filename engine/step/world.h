@@ -63,6 +63,7 @@ struct World {
   void certify_frame(std::size_t index);
 
  private:
+  void move_bodies(StepRecord& step);
   // Of the bodies, at the start.
   void add_body(std::size_t scene_body);
   // A mesh of several solids becomes as many bodies: nothing holds them together.
@@ -80,12 +81,22 @@ struct World {
   std::vector<bool> acting_loads(std::size_t i) const;
   std::string cannot_break(std::size_t i) const;
   std::string too_light(std::size_t i, Real force, Real pressure) const;  // N; mean over a contact patch, Pa
-  // Why body i's stress need not be solved in this step; empty with `loads` set when it must.
-  std::string reason_to_skip(std::size_t i, std::vector<BodyContact>& loads);
+  // What is to be done about body i in this step.
+  struct Due {
+    BodyId id;
+    std::string skipped;             // why its stress need not be solved; empty: it must
+    bool only_solve = false;         // for the cost alone: it may not break (Skip::kUnbreakable is off)
+    std::vector<BodyContact> loads;  // when it must
+  };
+  Due due(std::size_t i);
+  // The same with the contacts' loads in `due`, for a body that bears nothing new otherwise.
+  std::string bound(std::size_t i, const std::vector<BodyContact>& loads) const;
 
   // What breaks.
   FractureOptions fracture_options(std::size_t i) const;
-  void fracture(std::size_t i, std::vector<BodyContact>&& loads, StepRecord& step);
+  SurfaceLoad pull_on(std::size_t i, std::span<const BodyContact> loads) const;
+  void fracture(Due&& due, StepRecord& step);
+  void only_solve(const Due& due);
   // Guided cracks whose time has come, in all that is left of their body.
   void run_guides(StepRecord& step);
   void guide(std::size_t i, std::size_t crack, StepRecord& step);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "engine/step/elastic_settings.h"
@@ -87,31 +88,50 @@ std::vector<bool> World::acting_loads(std::size_t i) const {
   return acting;
 }
 
-std::string World::reason_to_skip(std::size_t i, std::vector<BodyContact>& loads) {
-  // Cheapest questions first: most bodies of a heap only rest.
+// Bounds of the force and the pressure first, which need no look at the surface: most bodies of a heap only rest.
+std::string World::bound(std::size_t i, const std::vector<BodyContact>& loads) const {
+  const auto disc = [](Real radius) { return std::numbers::pi * radius * radius; };
+  Real force = 0, pressure = 0;
+  for (const BodyContact& c : loads)
+    force += norm(c.force), pressure = std::max(pressure, norm(c.force) / disc(c.patch_radius));
+  return too_light(i, force, pressure);
+}
+
+World::Due World::due(std::size_t i) {
+  Due due;
+  due.id = bodies[i].id;
   Real impulse = 0, largest = 0;
   for (const Contact& c : contacts)
     if (c.a == bodies[i].id || c.b == bodies[i].id)
       impulse += norm(c.impulse), largest = std::max(largest, norm(c.impulse));
   const std::vector<bool> acting = acting_loads(i);
   const bool held = std::find(acting.begin(), acting.end(), true) != acting.end();
-  if (impulse == 0 && !held) return "no contact";
-  if (std::string reason = cannot_break(i); !reason.empty()) return reason;
-  if (held && acting != companions[i].solved_loads) {
-    loads = loads_on(i);
-    return {};
+  if (impulse == 0 && !held) {
+    due.skipped = "no contact";
+    return due;
   }
-  if (impulse == 0) return "load borne before";
-  const ContactLoadOptions options = load_options();
-  const auto disc = [](Real radius) { return std::numbers::pi * radius * radius; };
-  const Real shortest = shortest_duration(options),
-             area = disc(smallest_patch(companions[i].solid->diagonal(), options));
-  if (std::string reason = too_light(i, impulse / shortest, largest / shortest / area); !reason.empty()) return reason;
-  loads = loads_on(i);
-  Real force = 0, pressure = 0;
-  for (const BodyContact& c : loads)
-    force += norm(c.force), pressure = std::max(pressure, norm(c.force) / disc(c.patch_radius));
-  return too_light(i, force, pressure);
+  due.skipped = cannot_break(i);
+  const bool barred = !due.skipped.empty();
+  if (barred) {
+    due.only_solve = scene.fracture.enabled && !scene.skip[Skip::kUnbreakable];
+    record.skips.add(Skip::kUnbreakable, !due.only_solve);
+    if (!due.only_solve) return due;
+    due.skipped.clear();
+  }
+  if (impulse == 0 && (barred || acting == companions[i].solved_loads)) {
+    due.skipped = "load borne before";
+    return due;
+  }
+  const bool bounded = scene.skip[Skip::kLoadBounds] && !barred && (!held || acting == companions[i].solved_loads);
+  if (bounded) {
+    const ContactLoadOptions options = load_options();
+    const Real shortest = shortest_duration(options), radius = smallest_patch(companions[i].solid->diagonal(), options);
+    due.skipped = too_light(i, impulse / shortest, largest / shortest / (std::numbers::pi * radius * radius));
+  }
+  if (due.skipped.empty()) due.loads = loads_on(i);
+  if (bounded && due.skipped.empty()) due.skipped = bound(i, due.loads);
+  if (!barred) record.skips.add(Skip::kLoadBounds, !due.skipped.empty());
+  return due;
 }
 
 FractureOptions World::fracture_options(std::size_t i) const {
@@ -129,6 +149,7 @@ FractureOptions World::fracture_options(std::size_t i) const {
   o.dust = scene.fracture.dust == SceneDust::kKeep ? DustRule::kKeep : DustRule::kDrop;
   o.first_crack_id = next_crack;
   o.generation = bodies[i].generation;
+  o.skip = scene.skip;
   return o;
 }
 
@@ -179,28 +200,46 @@ void World::apply_shapes(std::size_t i, FractureResult& result, EventRecord& eve
   companions.insert(companions.begin() + static_cast<std::ptrdiff_t>(i), solids.begin(), solids.end());
 }
 
-void World::fracture(std::size_t i, std::vector<BodyContact>&& loads, StepRecord& step) {
+SurfaceLoad World::pull_on(std::size_t i, std::span<const BodyContact> loads) const {
   const Body& body = bodies[i];
-  Companion& companion = companions[i];
-  Solid& solid = *companion.solid;
-  companion.last_solve = steps;
-  // Mass of the clean mesh, the one the load must balance on; its density makes up for the notches of the shown one.
-  MassProperties mass = mass_properties(solid.mesh(), 1);
-  const Real density = body.mass.mass / mass.volume;
-  mass.mass = body.mass.mass, mass.inertia *= density;
+  Solid& solid = *companions[i].solid;
   SurfaceLoad pull;
   pull.patches = contact_patches(solid.mesh(), loads, solid.twins(), solid.bvh());
   pull.omega = rotate(conjugate(body.pose.orientation), body.angular_velocity);
-  companion.solved_loads = acting_loads(i);
-  for (const HeldLoad& l : companion.loads)
+  for (const HeldLoad& l : companions[i].loads)
     if (l.load.acts(time())) pull.applied.push_back(l.traction);
-  const Elastic material{shear_modulus(body.material), body.material.poisson};
+  return pull;
+}
+
+namespace {
+
+// Mass of the clean mesh, the one the load must balance on; its density makes up for the notches of the shown one.
+MassProperties clean_mass(const Body& body, const SurfaceMesh& mesh) {
+  MassProperties mass = mass_properties(mesh, 1);
+  const Real density = body.mass.mass / mass.volume;
+  mass.mass = body.mass.mass, mass.inertia *= density;
+  return mass;
+}
+
+Elastic elastic_of(const Body& body) {
+  return {shear_modulus(body.material), body.material.poisson};
+}
+
+}  // namespace
+
+void World::fracture(Due&& due, StepRecord& step) {
+  const std::size_t i = index_of(due.id);
+  Companion& companion = companions[i];
+  Solid& solid = *companion.solid;
+  companion.last_solve = steps;
+  companion.solved_loads = acting_loads(i);
+  const SurfaceLoad pull = pull_on(i, due.loads);
   EventRecord event;
   record_mesh(i);
   event.mesh = companion.mesh, event.applied_loads = pull.applied.size();
   const FractureOptions options = fracture_options(i);
-  event.result = fracture_solid(solid, mass, material, pull, options);
-  event.contacts = std::move(loads);
+  event.result = fracture_solid(solid, clean_mass(bodies[i], solid.mesh()), elastic_of(bodies[i]), pull, options);
+  event.contacts = std::move(due.loads);
   const SolveRecord& solve = event.result.solves[0];
   if (solve.solved)
     companion.ratio_per_force =
@@ -208,7 +247,20 @@ void World::fracture(std::size_t i, std::vector<BodyContact>&& loads, StepRecord
                  solve.strongest.stress.value / solve.force / options.fields.strength->at(solve.strongest.position));
   else
     ++companion.failed_solves;
+  record.skips += event.result.skips;
+  if (!scene.skip[Skip::kOperators]) solid.drop_elastic();
   take(i, std::move(event), step);
+}
+
+void World::only_solve(const Due& due) {
+  const std::size_t i = index_of(due.id);
+  Solid& solid = *companions[i].solid;
+  FractureOptions options = fracture_options(i);
+  options.only_solve = true;
+  record.skips +=
+      fracture_solid(solid, clean_mass(bodies[i], solid.mesh()), elastic_of(bodies[i]), pull_on(i, due.loads), options)
+          .skips;
+  if (!scene.skip[Skip::kOperators]) solid.drop_elastic();
 }
 
 void World::take(std::size_t i, EventRecord&& event, StepRecord& step) {
@@ -272,34 +324,53 @@ void World::limit_operators() {
   }
 }
 
-void World::advance() {
-  StepRecord step;
+// What the rigid step leaves out. Fields are kept in the cache; made anew for all, they give the same contacts.
+void World::move_bodies(StepRecord& step) {
+  const std::size_t built_before = cache.builds();
+  if (!scene.skip[Skip::kDistanceFields]) {
+    std::vector<std::size_t> all(bodies.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    cache.clear();
+    cache.update(bodies);
+    cache.build(bodies, all);
+  }
   RigidStats stats;
   {
     const Stopwatch watch(step.rigid_seconds, "rigid step");
     rigid_step(bodies, ground, rigid, cache, rigid_state, contacts, stats);
   }
-  ++steps;
-  step.step = steps, step.time = time();
   step.pairs_near = stats.contact.pairs_near, step.contacts = contacts.size(),
   step.fields_built = stats.contact.fields_built;
   step.contact_iterations = stats.iterations, step.asleep = stats.asleep;
+  std::size_t moving = 0;
+  for (const Body& b : bodies) moving += !b.fixed;
+  record.skips.skipped(Skip::kSleep, stats.asleep);
+  record.skips.done(Skip::kSleep, moving - stats.asleep);
+  const std::size_t built = cache.builds() - built_before;
+  record.skips.done(Skip::kDistanceFields, built);
+  record.skips.skipped(Skip::kDistanceFields, bodies.size() - built);
+}
+
+void World::advance() {
+  StepRecord step;
+  move_bodies(step);
+  ++steps;
+  step.step = steps, step.time = time();
   {
     const Stopwatch watch(step.fracture_seconds, "fracture");
     // By id: bodies shift while fragments replace their parents, and fragments of this step carry no contact yet.
-    struct Due {
-      BodyId id;
-      std::vector<BodyContact> loads;
-    };
-    std::vector<Due> due;
+    std::vector<Due> all;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      std::vector<BodyContact> loads;
-      if (const std::string reason = reason_to_skip(i, loads); !reason.empty())
-        ++step.skipped[reason];
-      else
-        due.push_back({bodies[i].id, std::move(loads)});
+      all.push_back(due(i));
+      if (!all.back().skipped.empty()) ++step.skipped[all.back().skipped];
     }
-    for (Due& d : due) fracture(index_of(d.id), std::move(d.loads), step);
+    for (Due& d : all) {
+      if (!d.skipped.empty()) continue;
+      if (d.only_solve)
+        only_solve(d);
+      else
+        fracture(std::move(d), step);
+    }
     run_guides(step);
     limit_operators();
   }

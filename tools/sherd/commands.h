@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "kernels/core/vec3.h"
 
@@ -19,12 +20,13 @@ int check_command(const CheckOptions& options);
 
 struct RunOptions {
   std::filesystem::path scene;
-  std::filesystem::path out;  // empty: out/NAME for scene NAME.toml
+  std::filesystem::path out;    // empty: out/NAME for scene NAME.toml
   std::filesystem::path trace;  // what ran when, Chrome's trace format; empty: none
-  int threads = 0;            // 0: all processors
-  int frames = 0;             // stop after so many; 0: the scene's duration
+  int threads = 0;              // 0: all processors
+  int frames = 0;               // stop after so many; 0: the scene's duration
   bool render = true;
-  bool wireframe = false;  // edges of the triangles over the bodies, in every picture
+  bool wireframe = false;            // edges of the triangles over the bodies, in every picture
+  std::vector<std::string> no_skip;  // keys of [skip] to turn off; "all": every one
   bool quiet = false;
 };
 int run_command(const RunOptions& options);

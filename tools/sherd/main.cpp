@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "engine/scene/skip.h"
 #include "kernels/core/error.h"
 #include "tools/sherd/commands.h"
 
@@ -35,6 +36,12 @@ void add_run(CLI::App& app, Choice& choice) {
   run->add_flag("--no-render", choice.no_render, "No pictures and no movie");
   run->add_flag("--wireframe", choice.run.wireframe, "Draw the edges of the triangles over the bodies");
   run->add_option("--trace", choice.run.trace, "File for what ran when on which thread (for ui.perfetto.dev)");
+  std::vector<std::string> skips{"all"};
+  for (const SkipSwitch& s : kSkipSwitches) skips.emplace_back(s.key);
+  run->add_option("--no-skip", choice.run.no_skip,
+                  "Do work that the scene does not need: keys of [skip], or all; to see what skipping saves")
+      ->delimiter(',')
+      ->check(CLI::IsMember(skips));
   run->add_flag("--quiet", choice.run.quiet, "Only errors");
 }
 

@@ -68,12 +68,16 @@ class TraceFile {
 int run_command(const RunOptions& options) {
   catch_interrupts();
   TraceFile trace(options.trace);
-  const Scene scene = load_scene(options.scene);
+  Scene scene = load_scene(options.scene);
+  for (const SkipSwitch& s : kSkipSwitches)
+    for (const std::string& key : options.no_skip)
+      if (key == "all" || key == s.key) scene.skip.set(s.skip, false);
   // Meshes are read and repaired here: nothing is written for a scene that cannot run.
   Simulation simulation(scene, {.threads = options.threads});
   const std::filesystem::path folder =
       options.out.empty() ? std::filesystem::path("out") / options.scene.stem() : options.out;
   RunWriter writer(scene.output, scene.frame_rate, folder, options.render);
+  if (!scene.skip[Skip::kUploads]) writer.upload_always();
   const bool limited = options.frames > 0;
   const std::size_t frame_limit =
       limited ? static_cast<std::size_t>(options.frames) : std::numeric_limits<std::size_t>::max();

@@ -94,6 +94,7 @@ void RunWriter::add(const Frame& frame, const View& view) {
 }
 
 void RunWriter::add_material(const Frame& frame, const View& view) {
+  if (material_rasterizer_ && upload_always_) material_rasterizer_->forget_meshes();
   if (material_rasterizer_) draw(*material_rasterizer_, frame, view, folder_ / kMaterial / picture_name(frames_ - 1));
 }
 

@@ -21,6 +21,8 @@ class RunWriter {
   void add(const Frame& frame, const View& view);
   // The material-space picture of the frame last added. Call for every frame or for none.
   void add_material(const Frame& frame, const View& view);
+  // Send every mesh to the renderer again for each picture (Skip::kUploads).
+  void upload_always() { upload_always_ = true; }
   bool draws() const { return rasterizer_ != nullptr; }
   // Movies and statistics; returns a line for each result, and for each that is missing, why.
   std::vector<std::string> finish(const std::string& stats_json);
@@ -35,6 +37,7 @@ class RunWriter {
   std::unique_ptr<Rasterizer> rasterizer_, material_rasterizer_;  // null when nothing is drawn
   std::unique_ptr<PieceWriter> pieces_;                           // null when not wanted
   std::size_t frames_ = 0;
+  bool upload_always_ = false;
 };
 
 }  // namespace sherd
