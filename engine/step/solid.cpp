@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/mesh/thickness.h"
+#include "engine/mesh/thickness_resolution.h"
 
 namespace sherd {
 
@@ -17,7 +18,11 @@ Real Solid::diagonal() {
 }
 
 Real Solid::thickness() {
-  if (thickness_ == 0) thickness_ = 2 * mesh_volume() / surface_area(*clean_);
+  if (thickness_ == 0) {
+    thickness_ = 2 * mesh_volume() / surface_area(*clean_);
+    const Real wall = resolution_report(*clean_).governing;
+    if (wall > 0) thickness_ = std::min(thickness_, wall);
+  }
   return thickness_;
 }
 

@@ -42,7 +42,9 @@ class Solid {
 
   Real mesh_volume();  // m^3
   Real diagonal();     // of the bounding box, m
-  Real thickness();    // 2 volume / area, m: of a plate its thickness, of a ball two thirds of its radius
+  // Of its thinnest parts, m: twice volume over area (of a plate its thickness, of a ball two thirds of its radius), or
+  // the wall all but a hundredth of its surface is thicker than.
+  Real thickness();
   // Edge length that puts several rows of a crack's sheet between the two sides of the wall near x, m: the mesh's, or a
   // shorter one.
   Real crack_edge_length(const Vec3& x);

@@ -30,7 +30,7 @@ struct World {
     std::size_t mesh = kUnrecorded;       // index into RunRecord::meshes
     std::size_t last_solve = 0;           // step, for dropping operators
     int failed_solves = 0;                // on this mesh
-    Real ratio_per_force = 0;             // largest stress over strength that solves of this mesh gave, 1/N
+    Real last_tension = 0;                // of the last solve of this mesh, Pa
   };
   // What belongs to a body of the scene and all its fragments.
   struct Root {
@@ -80,7 +80,8 @@ struct World {
   std::vector<BodyContact> loads_on(std::size_t i);
   std::vector<bool> acting_loads(std::size_t i) const;
   std::string cannot_break(std::size_t i) const;
-  std::string too_light(std::size_t i, Real force, Real pressure) const;  // N; mean over a contact patch, Pa
+  // Whether contacts of `force` (N) together and `pressure` (Pa) at most cannot break the body.
+  bool too_light(std::size_t i, Real force, Real pressure) const;
   // What is to be done about body i in this step.
   struct Due {
     BodyId id;
@@ -89,8 +90,7 @@ struct World {
     std::vector<BodyContact> loads;  // when it must
   };
   Due due(std::size_t i);
-  // The same with the contacts' loads in `due`, for a body that bears nothing new otherwise.
-  std::string bound(std::size_t i, const std::vector<BodyContact>& loads) const;
+  bool too_light(std::size_t i, const std::vector<BodyContact>& loads) const;
 
   // What breaks.
   FractureOptions fracture_options(std::size_t i) const;

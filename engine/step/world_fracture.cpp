@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "engine/load/tension_bound.h"
 #include "engine/step/elastic_settings.h"
 #include "engine/step/guided_event.h"
 #include "engine/step/inherit.h"
@@ -15,14 +16,14 @@
 namespace sherd {
 namespace {
 
-// A load this far below what a body can bear cannot break it; its stress is not solved. Estimates, not bounds: a wall
-// of thickness T = 2 V/A bears a bending force of order strength * T^2 (plates: 6 M / T^2 with M of order F / 2 pi),
-// and no tension exceeds the mean contact pressure by much away from it.
-constexpr Real kBendingShare = 0.05, kPressureShare = 0.5;
-// The stress a newton has caused on this mesh before, times this, stands for the stress it may cause elsewhere.
-constexpr Real kLearnedShare = 4;
 // A mesh that the solver failed on so often stays whole until something changes it.
 constexpr int kMaxFailedSolves = 2;
+
+constexpr const char* kTooLight = "load below strength";
+
+Real disc(Real radius) {
+  return std::numbers::pi * radius * radius;
+}
 
 // Meshes' dense operators kept at a time, bytes.
 constexpr std::size_t kOperatorBudget = std::size_t{3} << 30;
@@ -70,31 +71,30 @@ std::string World::cannot_break(std::size_t i) const {
   return {};
 }
 
-std::string World::too_light(std::size_t i, Real force, Real pressure) const {
+// Below the strength no crack starts, below the propagation strength none goes on.
+bool World::too_light(std::size_t i, Real force, Real pressure) const {
   const MaterialFields& fields = roots[companions[i].scene_body].fields;
-  const Real strength = fields.strength->lower(), wall = companions[i].solid->thickness();
-  if (force < kBendingShare * strength * wall * wall && pressure < kPressureShare * strength)
-    return "load below strength";
-  const Real needed =
-      companions[i].solid->partial.empty() ? 1 : fields.propagation_strength->lower() / fields.strength->upper();
-  if (companions[i].ratio_per_force > 0 && kLearnedShare * companions[i].ratio_per_force * force < needed)
-    return "load below what earlier ones bore";
-  return {};
+  Solid& solid = *companions[i].solid;
+  const Body& body = bodies[i];
+  const Real needed = (solid.partial.empty() ? fields.strength : fields.propagation_strength)->lower();
+  Real tension = tension_bound({solid.thickness(), solid.diagonal()},
+                               {force, pressure, body.mass.mass / body.mass.volume, norm(body.angular_velocity)});
+  const std::vector<bool> acting = acting_loads(i);
+  if (std::find(acting.begin(), acting.end(), true) != acting.end()) tension += companions[i].last_tension;
+  return tension < needed;
+}
+
+bool World::too_light(std::size_t i, const std::vector<BodyContact>& loads) const {
+  Real force = 0, pressure = 0;
+  for (const BodyContact& c : loads)
+    force += norm(c.force), pressure = std::max(pressure, norm(c.force) / disc(c.patch_radius));
+  return too_light(i, force, pressure);
 }
 
 std::vector<bool> World::acting_loads(std::size_t i) const {
   std::vector<bool> acting;
   for (const HeldLoad& l : companions[i].loads) acting.push_back(l.load.acts(time()));
   return acting;
-}
-
-// Bounds of the force and the pressure first, which need no look at the surface: most bodies of a heap only rest.
-std::string World::bound(std::size_t i, const std::vector<BodyContact>& loads) const {
-  const auto disc = [](Real radius) { return std::numbers::pi * radius * radius; };
-  Real force = 0, pressure = 0;
-  for (const BodyContact& c : loads)
-    force += norm(c.force), pressure = std::max(pressure, norm(c.force) / disc(c.patch_radius));
-  return too_light(i, force, pressure);
 }
 
 World::Due World::due(std::size_t i) {
@@ -123,13 +123,15 @@ World::Due World::due(std::size_t i) {
     return due;
   }
   const bool bounded = scene.skip[Skip::kLoadBounds] && !barred && (!held || acting == companions[i].solved_loads);
+  // Bounds of force and pressure first, which need no look at the surface: most bodies of a heap only rest.
   if (bounded) {
     const ContactLoadOptions options = load_options();
-    const Real shortest = shortest_duration(options), radius = smallest_patch(companions[i].solid->diagonal(), options);
-    due.skipped = too_light(i, impulse / shortest, largest / shortest / (std::numbers::pi * radius * radius));
+    const Real shortest = shortest_duration(options),
+               area = disc(smallest_patch(companions[i].solid->diagonal(), options));
+    if (too_light(i, impulse / shortest, largest / shortest / area)) due.skipped = kTooLight;
   }
   if (due.skipped.empty()) due.loads = loads_on(i);
-  if (bounded && due.skipped.empty()) due.skipped = bound(i, due.loads);
+  if (bounded && due.skipped.empty() && too_light(i, due.loads)) due.skipped = kTooLight;
   if (!barred) record.skips.add(Skip::kLoadBounds, !due.skipped.empty());
   return due;
 }
@@ -182,7 +184,7 @@ void World::apply_shapes(std::size_t i, FractureResult& result, EventRecord& eve
                       .mesh = clean_kept ? companion.mesh : kUnrecorded,
                       .last_solve = companion.last_solve,
                       .failed_solves = clean_kept ? companion.failed_solves : 0,
-                      .ratio_per_force = clean_kept ? companion.ratio_per_force : 0});
+                      .last_tension = clean_kept ? companion.last_tension : 0});
   }
   inherit_motion(parent, fragments);
   const Momenta before = momenta(parent);
@@ -242,9 +244,7 @@ void World::fracture(Due&& due, StepRecord& step) {
   event.contacts = std::move(due.loads);
   const SolveRecord& solve = event.result.solves[0];
   if (solve.solved)
-    companion.ratio_per_force =
-        std::max(companion.ratio_per_force,
-                 solve.strongest.stress.value / solve.force / options.fields.strength->at(solve.strongest.position));
+    companion.last_tension = solve.strongest.stress.value;
   else
     ++companion.failed_solves;
   record.skips += event.result.skips;

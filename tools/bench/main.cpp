@@ -13,6 +13,7 @@
 #include "tools/bench/cracks.h"
 #include "tools/bench/fmm.h"
 #include "tools/bench/pairs.h"
+#include "tools/bench/scenes.h"
 #include "tools/bench/solve.h"
 #include "tools/bench/stress.h"
 
@@ -186,6 +187,36 @@ CLI::App* add_cracks(CLI::App& app, CracksCommand& c) {
   return cracks;
 }
 
+CLI::App* add_scenes(CLI::App& app, sherd::bench::ScenesOptions& o) {
+  using sherd::bench::SceneStudy;
+  static const std::map<std::string, SceneStudy> studies{{"table", SceneStudy::kTable},
+                                                         {"threads", SceneStudy::kThreads},
+                                                         {"skips", SceneStudy::kSkips},
+                                                         {"error", SceneStudy::kError}};
+  CLI::App* scenes =
+      app.add_subcommand("scenes", "whole scenes: the paper's Table 3, threads, skipping, accuracy settings");
+  scenes->add_option("--scene", o.scenes, "names in the folder, or files (default: the paper's five)");
+  scenes
+      ->add_option(
+          "--study", o.studies,
+          "table, threads, skips (each switch off in turn), error (each quality against the finest); default: table")
+      ->transform(CLI::CheckedTransformer(studies));
+  const auto quality = CLI::IsMember({"preview", "default", "fine"});
+  scenes->add_option("--quality", o.quality, "of table, threads and skips")->check(quality)->capture_default_str();
+  scenes->add_option("--finest", o.finest, "reference of the error study")->check(quality)->capture_default_str();
+  scenes->add_option("--frames", o.frames, "of each run (default: all)")->check(CLI::PositiveNumber);
+  scenes->add_option("--threads", o.threads)->check(CLI::Range(1, 1024))->capture_default_str();
+  scenes->add_option("--folder", o.folder, "of the scenes")->capture_default_str();
+  scenes->add_option("--program", o.program, "the command sherd (default: beside this program)");
+  scenes->add_option("--plots", o.plots, "folder for the error study's plots")->check(CLI::ExistingDirectory);
+  scenes->add_option("--json", o.json, "file for the numbers");
+  scenes->footer(
+      "Examples:\n  sherd-bench scenes --json out.json\n  sherd-bench scenes --scene dinner_table --study skips "
+      "--quality "
+      "preview --frames 8\n  sherd-bench scenes --study error --finest default --plots .");
+  return scenes;
+}
+
 int run_micro(const std::string& program, std::vector<std::string> rest) {
   std::string name = program;
   std::vector<char*> arguments{name.data()};
@@ -217,6 +248,8 @@ int main(int argc, char** argv) {
   CLI::App* solve = add_solve(app, solve_command);
   CracksCommand cracks_command;
   CLI::App* cracks = add_cracks(app, cracks_command);
+  sherd::bench::ScenesOptions scenes_options;
+  CLI::App* scenes = add_scenes(app, scenes_options);
   CLI11_PARSE(app, argc, argv);
   if (*cracks) {
     const sherd::ThreadLimit limit(cracks_command.threads);
@@ -225,6 +258,14 @@ int main(int argc, char** argv) {
   if (*solve) {
     const sherd::ThreadLimit limit(solve_command.threads);
     return sherd::bench::run_solve(solve_command.options);
+  }
+  if (*scenes) {
+    try {
+      return sherd::bench::run_scenes(scenes_options);
+    } catch (const sherd::InputError& e) {
+      std::fprintf(stderr, "sherd-bench: %s\n", e.what());
+      return 2;
+    }
   }
   if (*fmm) return sherd::bench::run_fmm(fmm_options);
   if (*pairs) return sherd::bench::run_pairs(pairs_options);

@@ -1,0 +1,163 @@
+// Run time against error of whole scenes: every accuracy setting beside the finest. What a whole scene's error is, is
+// four questions: when and where does the first crack start, into how many pieces of which volumes do the bodies fall,
+// and how large were the stresses before?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include "kernels/core/vec3.h"
+#include "tools/bench/plot.h"
+#include "tools/bench/scenes.h"
+
+namespace sherd::bench {
+namespace {
+
+using nlohmann::json;
+
+struct Outcome {
+  bool cracked = false;
+  double first_time = 0;  // s
+  Vec3 first_place;       // material space, m
+  std::string first_body;
+  double first_stress = 0;  // largest of the event, Pa
+  std::size_t pieces = 0;
+  std::vector<double> share;  // of each body at the end of the volume of all, descending
+};
+
+Vec3 vector_of(const json& j) {
+  return {j[0], j[1], j[2]};
+}
+
+Outcome outcome_of(const json& stats) {
+  Outcome o;
+  for (const json& event : stats["events"]) {
+    if (o.cracked || event["cracks"].empty() || !event.contains("solve")) continue;
+    for (const json& crack : event["cracks"]) {
+      if (crack["outcome"] != "complete" && crack["outcome"] != "arrested" && crack["outcome"] != "pierced") continue;
+      o.cracked = true, o.first_time = event["time"], o.first_body = event["body"];
+      o.first_place = vector_of(crack["seed"]), o.first_stress = event["solve"]["max_principal"];
+      break;
+    }
+  }
+  if (!stats["frames"].empty()) {
+    double total = 0;
+    for (const json& at : stats["frames"].back()["certificates"]) {
+      o.share.push_back(stats["certificates"][at.get<std::size_t>()]["volume"]);
+      total += o.share.back();
+    }
+    for (double& v : o.share) v /= total;
+  }
+  std::sort(o.share.rbegin(), o.share.rend());
+  o.pieces = o.share.size();
+  return o;
+}
+
+// Half the sum of |difference| of the volumes in order of size: 0 equal, 1 nothing in common.
+double volume_distance(const Outcome& a, const Outcome& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < std::max(a.pieces, b.pieces); ++i)
+    sum += std::abs((i < a.pieces ? a.share[i] : 0) - (i < b.pieces ? b.share[i] : 0));
+  return sum / 2;
+}
+
+// Largest stress of every event until `time`, in their order; the rms of the differences over the rms of the reference.
+double stress_distance(const json& a, const json& b, double time) {
+  const auto history = [&](const json& stats) {
+    std::vector<double> h;
+    for (const json& event : stats["events"])
+      if (event.contains("solve") && event["time"].get<double>() <= time + 1e-9)
+        h.push_back(event["solve"]["max_principal"]);
+    return h;
+  };
+  const std::vector<double> x = history(a), y = history(b);
+  double difference = 0, size = 0;
+  for (std::size_t i = 0; i < std::max(x.size(), y.size()); ++i) {
+    const double p = i < x.size() ? x[i] : 0, q = i < y.size() ? y[i] : 0;
+    difference += (p - q) * (p - q), size += q * q;
+  }
+  return size > 0 ? std::sqrt(difference / size) : 0;
+}
+
+double per_cent(double v) {
+  return 100 * v;
+}
+
+void plot(const ScenesOptions& o, const std::string& scene, const json& rows) {
+  LogLogPlot p{"Run time against error: " + scene,
+               "CPU seconds",
+               "difference from the finest run (%; 0.01 stands for none)",
+               {}};
+  for (const auto& [key, name] : {std::pair{"volume_error", "volumes of the pieces"},
+                                  {"stress_error", "peak stress before the first crack"},
+                                  {"pieces_error", "number of pieces"}}) {
+    Series s{name, {}, {}, {}};
+    for (const json& row : rows)
+      if (row["scene"] == scene && row.contains(key)) {
+        s.x.push_back(row["cpu_s"]), s.y.push_back(std::max(0.01, per_cent(row[key].get<double>())));
+        s.label.push_back(row["quality"]);
+      }
+    p.series.push_back(std::move(s));
+  }
+  write_svg(p, o.plots + "/" + scene + ".svg");
+}
+
+}  // namespace
+
+json scene_errors(const ScenesOptions& o, const std::vector<std::string>& scenes, bool& failed) {
+  std::vector<std::string> qualities;
+  for (const char* q : {"preview", "default", "fine"}) {
+    qualities.emplace_back(q);
+    if (o.finest == q) break;
+  }
+  json rows = json::array();
+  std::printf("\nRun time against error: each setting against %s.\n%-14s %-8s %9s %9s %8s %7s %10s %9s %8s %8s\n",
+              o.finest.c_str(), "scene", "quality", "triangles", "CPU s", "pieces", "volume%", "first at s", "place mm",
+              "stress%", "solves");
+  for (const std::string& scene : scenes) {
+    std::vector<SceneRun> runs;
+    for (const std::string& q : qualities) runs.push_back(run_scene(o, scene, q, o.threads));
+    if (std::any_of(runs.begin(), runs.end(), [](const SceneRun& r) { return r.exit_code != 0; })) {
+      failed = true;
+      std::printf("%-14s a run failed\n", scene.c_str());
+      continue;
+    }
+    const Outcome finest = outcome_of(runs.back().stats);
+    for (const SceneRun& run : runs) {
+      const Outcome at = outcome_of(run.stats);
+      const SceneNumbers n = scene_numbers(run.stats);
+      const double place = at.cracked && finest.cracked ? distance(at.first_place, finest.first_place) : 0;
+      json row{{"scene", scene},
+               {"quality", run.quality},
+               {"triangles", n.triangles},
+               {"solves", n.solves},
+               {"cpu_s", run.cpu_s},
+               {"wall_s", run.wall_s},
+               {"pieces", at.pieces},
+               {"volumes", at.share},
+               {"first_crack", {{"body", at.first_body}, {"time", at.first_time}, {"stress", at.first_stress}}}};
+      const double volume = volume_distance(at, finest),
+                   stress = stress_distance(run.stats, runs.back().stats, finest.first_time);
+      if (&run != &runs.back()) {
+        row["volume_error"] = volume, row["stress_error"] = stress;
+        row["time_error_s"] = std::abs(at.first_time - finest.first_time);
+        row["place_distance"] = place;
+        row["same_body"] = at.first_body == finest.first_body;
+        row["pieces_error"] = std::abs(static_cast<double>(at.pieces) - static_cast<double>(finest.pieces)) /
+                              static_cast<double>(finest.pieces);
+      }
+      std::printf("%-14s %-8s %9zu %9.1f %8zu %7.2f %10.4f %9s %8.2f %8zu\n", scene.c_str(), run.quality.c_str(),
+                  n.triangles, run.cpu_s, at.pieces, per_cent(volume), at.first_time,
+                  at.first_body == finest.first_body ? fmt::format("{:.1f}", 1000 * place).c_str() : "other",
+                  per_cent(stress), n.solves);
+      std::fflush(stdout);
+      rows.push_back(std::move(row));
+    }
+    if (!o.plots.empty()) plot(o, scene, rows);
+  }
+  return rows;
+}
+
+}  // namespace sherd::bench
