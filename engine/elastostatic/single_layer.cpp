@@ -6,7 +6,6 @@
 #include "engine/elastostatic/panel_search.h"
 #include "kernels/core/parallel.h"
 #include "kernels/fmm/plan.h"
-#include "kernels/fundamental/kelvin.h"
 #include "kernels/quadrature/gauss.h"
 
 namespace sherd {
@@ -44,23 +43,74 @@ struct PointForces {
       force.push_back(at(q, g.b, g.c) * (g.weight * f.area));
     }
   }
-  Vec3 displacement(std::size_t begin, std::size_t end, const Vec3& x, const Elastic& m) const {
-    Vec3 u;
-    for (std::size_t i = begin; i < end; ++i) u += kelvin::displacement(x - position[i], force[i], m);
-    return u;
+  LaneSources part(std::size_t begin, std::size_t count) const {
+    const Vec3Column &p = position, &f = force;
+    return {p.x.data() + begin,
+            p.y.data() + begin,
+            p.z.data() + begin,
+            f.x.data() + begin,
+            f.y.data() + begin,
+            f.z.data() + begin,
+            count};
   }
+  LaneSources all() const { return part(0, position.size()); }
+};
+
+// From this part of the closed forms' reach on, a quadratic density is integrated by seven points on each quarter of
+// the panel: they are as far away in quarters' edges as the closed forms' reach is in panels', and cost a fifth.
+constexpr Real kQuarters = 0.6;
+
+// The four triangles between the corners and midpoints of (0, 0), (1, 0), (0, 1), with kGauss7 on each.
+std::array<TrianglePoint, 28> make_quarters() {
+  std::array<TrianglePoint, 28> out{};
+  constexpr Real kCorner[4][3][2] = {{{0, 0}, {0.5, 0}, {0, 0.5}},
+                                     {{0.5, 0}, {1, 0}, {0.5, 0.5}},
+                                     {{0, 0.5}, {0.5, 0.5}, {0, 1}},
+                                     {{0.5, 0}, {0.5, 0.5}, {0, 0.5}}};
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t q = 0; q < 7; ++q) {
+      const TrianglePoint& g = kGauss7[q];
+      const auto& c = kCorner[k];
+      const Real b = g.a * c[0][0] + g.b * c[1][0] + g.c * c[2][0], t = g.a * c[0][1] + g.b * c[1][1] + g.c * c[2][1];
+      out[7 * k + q] = {1 - b - t, b, t, g.weight / 4};
+    }
+  return out;
+}
+
+// Point forces of one panel, on the stack.
+template <std::size_t N>
+struct FewForces {
+  double value[6][N];
+
+  FewForces(const PanelFrame& f, const std::array<TrianglePoint, N>& rule, const Density& q) {
+    for (std::size_t i = 0; i < N; ++i) {
+      const TrianglePoint& g = rule[i];
+      const Vec3 y = f.vertex[0] * g.a + f.vertex[1] * g.b + f.vertex[2] * g.c,
+                 t = at(q, g.b, g.c) * (g.weight * f.area);
+      for (int k = 0; k < 3; ++k) value[k][i] = y[k], value[3 + k][i] = t[k];
+    }
+  }
+  LaneSources all() const { return {value[0], value[1], value[2], value[3], value[4], value[5], N}; }
+};
+
+// Eight targets, coordinates one after another, and what is summed at them.
+struct Lanes {
+  double x[3 * kLanes] = {}, u[3 * kLanes] = {};
+
+  void kelvin(const LaneSources& s, Real ratio, Real least2) { lane_kernels().kelvin_sum(s, ratio, least2, x, u); }
+  Vec3 at(std::size_t k) const { return {u[k], u[kLanes + k], u[2 * kLanes + k]}; }
 };
 
 // The layer with everything that does not depend on the target computed once: closed form near the target, seven points
-// farther away, three points far away.
+// on quarters of a panel, then on panels, three points far away.
 struct Layer {
   std::vector<PanelFrame> panel;
   std::vector<char> constant;
   std::vector<Density> density;
   PointForces middle, far;  // seven and three a panel
   Vec3Column centroid;
-  std::vector<Real> near2, middle2;  // squared reach of each description, m^2
-  Real least2 = 1e300;               // a target this near a Gauss point is that point (of its own panel), m^2
+  std::vector<Real> near2, quarters2, middle2;  // squared reach of each description, m^2
+  Real least2 = 1e300;                          // a target this near a Gauss point is that point (of its panel), m^2
 
   void add(const PanelFrame& f, const Density& q, bool is_constant, const QuadratureOptions& o) {
     panel.push_back(f), density.push_back(q), constant.push_back(is_constant);
@@ -70,7 +120,9 @@ struct Layer {
     // Displacements of constants, unlike their gradients, are within 1.4e-5 from two edges on (design notes, section
     // 2).
     const Real reach = is_constant ? std::max(o.closed_form - 1, 0.0) : o.closed_form;
-    near2.push_back(reach * reach * f.longest2), middle2.push_back(o.gauss7 * o.gauss7 * f.longest2);
+    const Real closed = is_constant ? reach : kQuarters * reach;
+    near2.push_back(closed * closed * f.longest2), quarters2.push_back(reach * reach * f.longest2);
+    middle2.push_back(o.gauss7 * o.gauss7 * f.longest2);
   }
   Vec3 closed_form(std::size_t i, const Vec3& x, const Elastic& m) const {
     const Density& q = density[i];
@@ -85,17 +137,9 @@ struct Layer {
     for (std::size_t k = 0; k < q.size(); ++k) u += q[k] * ((3 - 4 * m.nu) * v.inverse[k]) + v.dyad[k] * q[k];
     return u * m.kelvin();
   }
-  // The three-point sum over all panels for eight targets at once.
-  void far_sum(const std::array<Vec3, kLanes>& x, std::size_t count, const Elastic& m, Vec3* out) const {
-    double target[3 * kLanes], sum[3 * kLanes] = {};
-    for (std::size_t k = 0; k < kLanes; ++k)
-      for (int i = 0; i < 3; ++i) target[static_cast<std::size_t>(i) * kLanes + k] = x[k < count ? k : 0][i];
-    const Vec3Column &p = far.position, &f = far.force;
-    lane_kernels().kelvin_sum({p.x.data(), p.y.data(), p.z.data(), f.x.data(), f.y.data(), f.z.data(), p.size()},
-                              3 - 4 * m.nu, least2, target, sum);
-    for (std::size_t k = 0; k < count; ++k) out[k] = Vec3{sum[k], sum[kLanes + k], sum[2 * kLanes + k]} * m.kelvin();
-  }
-  // The same by the fast multipole method, for all targets.
+  // The three-point sum over all panels, but for kelvin().
+  void far_sum(const Elastic& m, Lanes& lanes) const { lanes.kelvin(far.all(), 3 - 4 * m.nu, least2); }
+  // The same by the fast multipole method, for all targets, m.
   Vec3Column far_sums(const Vec3Column& x, const Elastic& m) const {
     fmm::PlanOptions o;
     o.tolerance = kFastTolerance, o.arithmetic = fmm::Arithmetic::kMixed;
@@ -109,18 +153,48 @@ struct Layer {
     for (std::size_t i = 0; i < x.size(); ++i) out.set(i, {value[i], value[x.size() + i], value[2 * x.size() + i]});
     return out;
   }
-  // What panels nearer than three points allow add to that.
-  Vec3 correction(std::span<const std::uint32_t> panels, const Vec3& x, const Elastic& m) const {
-    const Vec3Column &p = far.position, &f = far.force;
-    Vec3 u;
+  // What panels nearer than three points allow add to that at the first `count` targets.
+  void correct(std::span<const std::uint32_t> panels, std::size_t count, const std::array<Vec3, kLanes>& x,
+               const Elastic& m, std::array<Vec3, kLanes>& u) const {
+    static const std::array<TrianglePoint, 28> quarters = make_quarters();
+    const Real ratio = 3 - 4 * m.nu;
+    std::array<Real, kLanes> d2{};
+    Vec3 centre;
+    for (const Vec3& p : x) centre += p / static_cast<Real>(kLanes);
+    Real radius = 0;
+    for (const Vec3& p : x) radius = std::max(radius, distance(p, centre));
     for (const std::uint32_t i : panels) {
-      const Real d2 = distance2(x, centroid[i]);
-      if (d2 > middle2[i]) continue;
-      for (std::size_t q = 3 * i; q < 3 * i + 3; ++q)
-        if (distance2(x, p[q]) > least2) u -= kelvin::displacement(x - p[q], f[q], m);
-      u += d2 > near2[i] ? middle.displacement(7 * i, 7 * i + 7, x, m) : closed_form(i, x, m);
+      const Real reach = std::sqrt(middle2[i]) + radius;
+      if (distance2(centre, centroid[i]) > reach * reach) continue;
+      Real nearest = 1e300;
+      bool by_middle = false, by_quarters = false;
+      for (std::size_t k = 0; k < count; ++k) {
+        d2[k] = distance2(x[k], centroid[i]);
+        nearest = std::min(nearest, d2[k]);
+        by_middle |= d2[k] > quarters2[i] && d2[k] <= middle2[i];
+        by_quarters |= d2[k] > near2[i] && d2[k] <= quarters2[i];
+      }
+      if (nearest > middle2[i]) continue;
+      Lanes three, seven, fine;
+      for (std::size_t k = 0; k < kLanes; ++k)
+        for (std::size_t j = 0; j < 3; ++j) three.x[j * kLanes + k] = x[k < count ? k : 0][static_cast<int>(j)];
+      std::copy_n(three.x, 3 * kLanes, seven.x), std::copy_n(three.x, 3 * kLanes, fine.x);
+      three.kelvin(far.part(3 * i, 3), ratio, least2);
+      if (by_middle) seven.kelvin(middle.part(7 * i, 7), ratio, least2);
+      if (by_quarters) {
+        fine.kelvin(FewForces(panel[i], quarters, density[i]).all(), ratio, least2);
+      }
+      for (std::size_t k = 0; k < count; ++k) {
+        if (d2[k] > middle2[i]) continue;
+        u[k] -= three.at(k) * m.kelvin();
+        if (d2[k] > quarters2[i])
+          u[k] += seven.at(k) * m.kelvin();
+        else if (d2[k] > near2[i])
+          u[k] += fine.at(k) * m.kelvin();
+        else
+          u[k] += closed_form(i, x[k], m);
+      }
     }
-    return u;
   }
 };
 
@@ -154,17 +228,21 @@ Vec3Column load_potential(const Boundary& b, const Load& load, const ParticularS
   const bool fast = static_cast<double>(layer.far.position.size()) * static_cast<double>(points.size()) > kFastPairs;
   Vec3Column potential = fast ? layer.far_sums(points, m) : Vec3Column(points.size());
   const PanelSearch search(layer.centroid, layer.middle2);
+  const std::vector<std::uint32_t> order = along_curve(points);  // eight targets near each other share their panels
   parallel_for((points.size() + kLanes - 1) / kLanes, 4, [&](std::size_t group) {
     std::array<Vec3, kLanes> x, u;
     const std::size_t first = group * kLanes, count = std::min(kLanes, points.size() - first);
-    for (std::size_t k = 0; k < count; ++k) x[k] = points[first + k], u[k] = potential[first + k];
-    if (!fast) layer.far_sum(x, count, m, u.data());
-    for (std::size_t k = 0; k < count; ++k) {
-      Box at;
+    Lanes lanes;
+    Box at;
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      x[k] = points[order[first + (k < count ? k : 0)]];
       at.grow(x[k]);
-      search.visit(at, [&](std::size_t block) { u[k] += layer.correction(search.block(block), x[k], m); });
-      potential.set(first + k, u[k]);
+      for (std::size_t j = 0; j < 3; ++j) lanes.x[j * kLanes + k] = x[k][static_cast<int>(j)];
     }
+    if (!fast) layer.far_sum(m, lanes);
+    for (std::size_t k = 0; k < count; ++k) u[k] = fast ? potential[order[first + k]] : lanes.at(k) * m.kelvin();
+    search.visit(at, [&](std::size_t block) { layer.correct(search.block(block), count, x, m, u); });
+    for (std::size_t k = 0; k < count; ++k) potential.set(order[first + k], u[k]);
   });
   return potential;
 }
