@@ -108,13 +108,19 @@ void ElasticBody::precondition() {
       (options_.preconditioning == Preconditioning::kFactored ||
        (options_.preconditioning == Preconditioning::kAuto && (n <= 1500 || (n <= 12000 && slender_))));
   if (factors && factor()) return;
-  if (make_factors_ || slender_ || options_.preconditioning == Preconditioning::kDeflation) deflate();
+  if (make_factors_ || slender_ || options_.coarse_space || options_.preconditioning == Preconditioning::kDeflation)
+    deflate();
 }
 
 void ElasticBody::deflate() const {
   DeflationOptions o = options_.deflation;
   if (!make_factors_) o.max_dimension = std::min<std::size_t>(o.max_dimension, kFastCoarseDimension);
   deflation_ = std::make_unique<Deflation>(*completed_, boundary_, inverse_blocks_, o);
+}
+
+bool ElasticBody::needs_coarse_space() const {
+  const std::lock_guard lock(factoring_);
+  return deflation_ != nullptr;
 }
 
 bool ElasticBody::factor() const {

@@ -36,6 +36,8 @@ struct ElasticOptions {
   KrylovOptions krylov;
   DeflationOptions deflation;
   Preconditioning preconditioning = Preconditioning::kAuto;
+  // A coarse space from the start: what needs_coarse_space() said of an earlier ElasticBody of this mesh.
+  bool coarse_space = false;
   OperatorKind kind = OperatorKind::kAuto;
   // kAuto: the most a dense matrix is made for. Bodies that are not bulky take a finer far field and many products.
   std::size_t dense_bulky_unknowns = 6000, dense_unknowns = 12000;
@@ -74,6 +76,9 @@ class ElasticBody {
   const ElasticOptions& options() const { return options_; }
   const LinearOperator& system() const { return *operator_; }  // without completion
   std::size_t bytes() const;                                   // of the operator, its factors and coarse space
+  // A solve has found that plain iterations do not converge, or a coarse space was there from the start. Later solves
+  // begin with it: a body made anew must be told, to solve bit for bit as this one would.
+  bool needs_coarse_space() const;
   const Reconstruction& reconstruction() const { return reconstruction_; }
   const Testing& testing() const { return testing_; }
 
