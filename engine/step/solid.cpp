@@ -47,7 +47,11 @@ const SurfaceRecovery& Solid::recovery() {
 }
 
 const ElasticBody& Solid::elastic(const Elastic& material, const ElasticOptions& options) {
-  if (!elastic_) elastic_ = std::make_unique<ElasticBody>(*clean_, material, options);
+  if (!elastic_) {
+    ElasticOptions o = options;
+    o.coarse_space = coarse_space;
+    elastic_ = std::make_unique<ElasticBody>(*clean_, material, o);
+  }
   return *elastic_;
 }
 
