@@ -64,12 +64,16 @@ class Resume : public Command {
   static std::string with(std::string text, const std::string& old, const std::string& fresh) {
     return text.replace(text.find(old), old.size(), fresh);
   }
+  // Runs a command of the shell; the output is the seconds it took.
+  Outcome timed(const std::string& command) const {
+    return shell("begin=$(date +%s%N); " + command +
+                 " >&2 || exit; echo $(( ($(date +%s%N) - begin) / 1000000 )) | awk '{ print $1 / 1000 }'");
+  }
   // Seconds a run of the scene takes on this machine now, into the folder `whole`.
   double timed_whole(const std::string& options) const {
-    const Outcome o = shell("begin=$(date +%s%N); \"$SHERD\" run scene.toml --out whole --quiet " + options +
-                            " >&2 || exit; echo $(( ($(date +%s%N) - begin) / 1000000 ))");
+    const Outcome o = timed("\"$SHERD\" run scene.toml --out whole --quiet " + options);
     EXPECT_EQ(o.code, 0) << o.errors;
-    return std::stod(o.output) / 1000;
+    return std::stod(o.output);
   }
   // Kills at moments spread over the run until it ends by itself; true when it was killed at least once.
   bool run_killed(double seconds, int kills, const std::string& options) const {
@@ -260,6 +264,36 @@ TEST_F(Resume, AMovieThatFfmpegCannotWriteIsAnErrorAfterAllElseIsWritten) {
       << o.errors;
   EXPECT_TRUE(fs::exists(folder_ / "results/stats.json") && fs::exists(folder_ / "results/frames/frame_0001.png"));
 }
+
+// Every scene that comes with the program, until it has broken for the first time: one thread without a stop, against
+// four threads stopped, then killed, then two that go on.
+class Scenes : public Resume, public testing::WithParamInterface<std::string> {};
+
+TEST_P(Scenes, GiveTheSameBytesForAnyThreadsAndAfterAKill) {
+  const std::string frames = GetParam() == "bunny" ? "4" : "3";
+  const std::string run = "\"$SHERD\" run " SHERD_SOURCE "/scenes/" + GetParam() + ".toml --quiet ";
+  const Outcome whole = timed(run + "--out whole --threads 1 --frames " + frames);
+  if (whole.errors.find("one that exists") != std::string::npos) GTEST_SKIP() << whole.errors;
+  ASSERT_EQ(whole.code, 0) << whole.errors;
+  EXPECT_GT(nlohmann::json::parse(read(folder_ / "whole/stats.json"))["totals"]["cracks"], 0);
+  const double seconds = std::stod(whole.output);
+  const Outcome parts = shell(run + "--out parts --threads 4 --frames 2 --checkpoint-every 0.004s || exit; " + run +
+                              "--out parts --threads 4 --resume --checkpoint-every 2 --frames " + frames +
+                              " & run=$!; sleep " + std::to_string(seconds / 4) + "; kill -9 $run; wait $run; " + run +
+                              "--out parts --threads 2 --resume --frames " + frames);
+  ASSERT_EQ(parts.code, 0) << parts.errors;
+  fs::remove_all(folder_ / "parts/checkpoint");  // not at the end of its scene, so it may go on
+  expect_same("whole", "parts");
+}
+
+std::vector<std::string> all_scenes() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(SHERD_SOURCE "/scenes"))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+INSTANTIATE_TEST_SUITE_P(Slow, Scenes, testing::ValuesIn(all_scenes()), [](const auto& scene) { return scene.param; });
 
 }  // namespace
 }  // namespace sherd::test
