@@ -1,21 +1,20 @@
 #include "render/movie.h"
 
 #include <fcntl.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
 #include <vector>
 
 #include "kernels/core/error.h"
-
-extern char** environ;
 
 namespace sherd {
 namespace {
@@ -39,22 +38,27 @@ struct RunResult {
   std::string output;  // standard error
 };
 
+// In a fresh child: becomes the program, with errors to `errors`, and dies with its parent: a movie still being written
+// for a killed run would meet the one of the run that goes on. Only what a signal handler may call.
+[[noreturn]] void become(char* const* argv, int errors, pid_t parent) {
+  const int nothing = open("/dev/null", O_RDWR);
+  const bool ready = prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && getppid() == parent && nothing >= 0 &&
+                     dup2(nothing, 0) == 0 && dup2(nothing, 1) == 1 && dup2(errors, 2) == 2;
+  if (ready) execv(argv[0], argv);
+  _exit(127);
+}
+
 // Runs a program with the given arguments, no shell, nothing on its standard input.
 RunResult run(const std::vector<std::string>& arguments) {
   RunResult result;
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return {-1, std::strerror(errno)};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], 2);
   std::vector<char*> argv;
-  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));  // spawn does not write to them
+  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));  // exec does not write to them
   argv.push_back(nullptr);
-  pid_t child = 0;
-  const int failed = posix_spawn(&child, argv[0], &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
+  const pid_t parent = getpid(), child = fork();
+  if (child == 0) become(argv.data(), ends[1], parent);
+  const int failed = child < 0 ? errno : 0;
   close(ends[1]);
   if (failed != 0) {
     close(ends[0]);
@@ -131,6 +135,7 @@ MovieResult encode_movie(const std::filesystem::path& folder, const std::string&
     }
     std::filesystem::remove(part, failed);
   }
+  result.failed = true;
   result.reason = fmt::format("no movie: ffmpeg could not write {} ({}); the pictures in {} are complete",
                               movie.string(), complaint, folder.string());
   return result;

@@ -10,6 +10,7 @@ namespace sherd {
 struct MovieResult {
   bool made = false;
   std::string encoder;  // "libx264" or "mpeg4" when made
+  bool failed = false;  // ffmpeg is there, but could not make it
   std::string reason;   // why not, with the remedy, when not made
 };
 

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "engine/mesh/write.h"
 #include "kernels/core/error.h"
+#include "kernels/core/file.h"
 
 namespace sherd {
 namespace {
@@ -49,21 +48,6 @@ std::string json_string(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
 
-void replace_file(const std::filesystem::path& path, const std::string& text) {
-  std::filesystem::path part = path;
-  part += ".part";
-  std::ofstream out(part, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
-  std::error_code failed, ignored;
-  if (out) std::filesystem::rename(part, path, failed);
-  if (!out || failed) {
-    std::filesystem::remove(part, ignored);
-    throw InputError(fmt::format("{}: cannot write the file{}; choose a writable output folder with free space",
-                                 path.string(), failed ? " (" + failed.message() + ")" : ""));
-  }
-}
-
 bool is_finite_pose(const FrameBody& b) {
   return is_finite(b.translation) && is_finite(b.rotation.row(0)) && is_finite(b.rotation.row(1)) &&
          is_finite(b.rotation.row(2));
@@ -71,14 +55,22 @@ bool is_finite_pose(const FrameBody& b) {
 
 }  // namespace
 
+void remove_pieces(const std::filesystem::path& folder, const std::set<std::string>& kept) {
+  std::error_code ignored;
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    std::string name = entry.path().filename().string();
+    if (name.ends_with(kPartSuffix)) name.resize(name.size() - kPartSuffix.size());
+    if ((name.ends_with(".ply") || name == "transforms.json") && !kept.contains(entry.path().filename().string()))
+      old.push_back(entry.path());
+  }
+  for (const auto& file : old) std::filesystem::remove(file, ignored);
+}
+
 PieceWriter::PieceWriter(std::filesystem::path folder, Real fps) : folder_(std::move(folder)), fps_(fps) {
   if (!(fps > 0) || !std::isfinite(fps))
     throw InputError("pieces: the frame rate must be positive; correct the scene's output rate");
-  std::error_code failed;
-  std::filesystem::create_directories(folder_, failed);
-  if (failed)
-    throw InputError(fmt::format("{}: cannot create the folder ({}); choose a writable output folder", folder_.string(),
-                                 failed.message()));
+  make_folder(folder_, "choose a writable output folder");
 }
 
 PieceWriter::~PieceWriter() {
@@ -88,11 +80,13 @@ PieceWriter::~PieceWriter() {
   }
 }
 
-PieceWriter::Piece PieceWriter::start_piece(const Frame& frame, const FrameBody& body) const {
+PieceWriter::Piece PieceWriter::start_piece(const Frame& frame, const FrameBody& body) {
   const std::string name = file_name(body);
   write_ply(*body.mesh, (folder_ / name).string());
+  unflushed_.push_back(folder_ / name);
   Piece piece;
   piece.first_frame = frame.index;
+  piece.file = name;
   piece.last_rotation = {1, 0, 0, 0};
   piece.head = fmt::format(R"({{"id": {}, "mesh_version": {}, "name": {}, "file": {}, "parent": {})", body.id,
                            body.mesh_version, json_string(body.name), json_string(name),
@@ -119,6 +113,26 @@ void PieceWriter::add(const Frame& frame) {
   ++frames_;
   // Rewriting after each eighth more keeps all rewriting together within nine times the final size.
   if (frames_ - written_ >= std::clamp<std::size_t>(written_ / 8, 1, 64)) finish();
+}
+
+void PieceWriter::keep(Archive& a) {
+  archive(a, frames_), archive(a, pieces_);
+  if (!a.reading()) return;
+  std::set<std::string> mine;
+  for (const auto& [key, piece] : pieces_) {
+    mine.insert(piece.file);
+    std::error_code none;
+    if (!std::filesystem::exists(folder_ / piece.file, none))
+      throw InputError(fmt::format("{}: a piece of the run so far is gone; put it back, or start anew",
+                                   (folder_ / piece.file).string()));
+  }
+  remove_pieces(folder_, mine);
+}
+
+void PieceWriter::flush() {
+  unflushed_.push_back(folder_);
+  flush_to_disk(unflushed_);
+  unflushed_.clear();
 }
 
 void PieceWriter::finish() {

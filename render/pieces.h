@@ -10,11 +10,16 @@
 #pragma once
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 
 #include "engine/frame/frame.h"
+#include "kernels/core/archive.h"
 
 namespace sherd {
+
+// Removes what a PieceWriter, also one that was killed, left in its folder, but for the PLY files named in `kept`.
+void remove_pieces(const std::filesystem::path& folder, const std::set<std::string>& kept = {});
 
 class PieceWriter {
  public:
@@ -29,6 +34,12 @@ class PieceWriter {
   // least every 64 frames or after each eighth more: the file on disk is valid at any time. Throws InputError naming
   // the file that cannot be written, or the body whose pose is not finite.
   void add(const Frame& frame);
+  // Poses and names of all shapes so far, written or read; the PLY files stay where they are. Reading is for a writer
+  // fresh from its constructor. Throws InputError naming a file of these that is no longer there, and removes PLY files
+  // of others: of frames after the state was taken.
+  void keep(Archive& a);
+  // Brings the PLY files to the disk itself.
+  void flush();
   // Brings transforms.json up to the last frame added.
   void finish();
 
@@ -38,12 +49,14 @@ class PieceWriter {
     std::size_t first_frame = 0, last_frame = 0;
     std::array<Real, 4> last_rotation{};  // w x y z, for signs that do not jump
     std::string poses;                    // JSON, comma separated
+    std::string file;                     // name in the folder
   };
-  Piece start_piece(const Frame& frame, const FrameBody& body) const;
+  Piece start_piece(const Frame& frame, const FrameBody& body);
 
   std::filesystem::path folder_;
   Real fps_;
-  std::size_t frames_ = 0, written_ = 0;
+  std::size_t frames_ = 0, written_ = 0;  // added, in transforms.json
+  std::vector<std::filesystem::path> unflushed_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, Piece> pieces_;  // (body id, mesh version)
 };
 

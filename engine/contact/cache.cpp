@@ -58,6 +58,25 @@ const CollisionShape& ContactCache::shape(const Body& body) const {
   return *e.shape;
 }
 
+ContactHistory ContactCache::history() const {
+  ContactHistory h{{}, builds_};
+  for (const auto& [id, entry] : entries_)
+    if (entry.shape) h.shapes[id] = entry.version;
+  return h;
+}
+
+void ContactCache::restore(std::span<const Body> bodies, const ContactHistory& history) {
+  entries_.clear();
+  update(bodies);
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto held = history.shapes.find(bodies[i].id);
+    if (held != history.shapes.end() && held->second == bodies[i].mesh_version) which.push_back(i);
+  }
+  build(bodies, which);
+  builds_ = history.builds;
+}
+
 std::size_t ContactCache::shapes() const {
   return static_cast<std::size_t>(
       std::count_if(entries_.begin(), entries_.end(), [](const auto& e) { return e.second.shape != nullptr; }));

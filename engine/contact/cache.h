@@ -10,6 +10,12 @@
 
 namespace sherd {
 
+// Which shapes a cache has built: what its counts go on from when the shapes themselves are built anew.
+struct ContactHistory {
+  std::map<BodyId, std::uint32_t> shapes;  // held, with the mesh version they are of
+  std::size_t builds = 0;                  // in all
+};
+
 class ContactCache {
  public:
   explicit ContactCache(const FieldOptions& options = {}) : options_(options) {}
@@ -30,6 +36,9 @@ class ContactCache {
   std::size_t shapes() const;                     // held now
   std::size_t builds() const { return builds_; }  // in all
   void clear() { entries_.clear(); }
+  ContactHistory history() const;
+  // Becomes the cache of these bodies that `history` was taken of.
+  void restore(std::span<const Body> bodies, const ContactHistory& history);
 
  private:
   struct Entry {

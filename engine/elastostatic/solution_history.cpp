@@ -22,9 +22,9 @@ bool SolutionHistory::guess(std::span<const Real> b, std::span<Real> x) const {
   std::fill(x.begin(), x.end(), Real{0});
   Real covered2 = 0;
   std::vector<Real> share;
-  for (const Pair& p : pairs_) share.push_back(inner(p.b, b)), covered2 += share.back() * share.back();
+  for (const Pair& p : pairs) share.push_back(inner(p.b, b)), covered2 += share.back() * share.back();
   if (!(covered2 > kHelps * kHelps * inner(b, b))) return false;
-  for (std::size_t i = 0; i < pairs_.size(); ++i) add_scaled(x, share[i], pairs_[i].x);
+  for (std::size_t i = 0; i < pairs.size(); ++i) add_scaled(x, share[i], pairs[i].x);
   return true;
 }
 
@@ -33,7 +33,7 @@ void SolutionHistory::add(std::span<const Real> b, std::span<const Real> x) {
   const Real whole = std::sqrt(inner(b, b));
   if (!(whole > 0)) return;
   for (int pass = 0; pass < 2; ++pass)  // twice is enough (Kahan), rounding included
-    for (const Pair& q : pairs_) {
+    for (const Pair& q : pairs) {
       const Real c = inner(q.b, p.b);
       add_scaled(p.b, -c, q.b), add_scaled(p.x, -c, q.x);
     }
@@ -41,8 +41,8 @@ void SolutionHistory::add(std::span<const Real> b, std::span<const Real> x) {
   if (!(left > kNew * whole)) return;
   for (Real& v : p.b) v /= left;
   for (Real& v : p.x) v /= left;
-  if (pairs_.size() == kMost) pairs_.erase(pairs_.begin());
-  pairs_.push_back(std::move(p));
+  if (pairs.size() == kMost) pairs.erase(pairs.begin());
+  pairs.push_back(std::move(p));
 }
 
 }  // namespace sherd

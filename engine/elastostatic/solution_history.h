@@ -9,8 +9,7 @@
 namespace sherd {
 
 // Right-hand sides are kept orthonormal, so the guess is the earlier solutions' best approximation in the residual.
-class SolutionHistory {
- public:
+struct SolutionHistory {
   // x = sum of (b_i . b) x_i; zero when nothing helps. Sizes as in every add(); false and x = 0 when it does not.
   bool guess(std::span<const Real> b, std::span<Real> x) const;
   // Keeps what is new in the pair, at most kMost of them; the oldest goes first. A pair less than kNew of which is new
@@ -20,13 +19,10 @@ class SolutionHistory {
   struct Pair {
     std::vector<Real> b, x;  // |b| = 1
   };
-  const std::vector<Pair>& pairs() const { return pairs_; }  // oldest first
-
   static constexpr std::size_t kMost = 8;
   static constexpr Real kNew = 0.05;
 
- private:
-  std::vector<Pair> pairs_;
+  std::vector<Pair> pairs;  // oldest first
 };
 
 }  // namespace sherd

@@ -122,7 +122,7 @@ void ElasticBody::deflate() const {
   deflation_ = std::make_unique<Deflation>(*completed_, boundary_, inverse_blocks_, o);
 }
 
-bool ElasticBody::needed_coarse_space() const {
+bool ElasticBody::needs_coarse_space() const {
   const std::lock_guard lock(factoring_);
   return deflation_ != nullptr;
 }

@@ -37,13 +37,12 @@ struct ElasticOptions {
   KrylovOptions krylov;
   DeflationOptions deflation;
   Preconditioning preconditioning = Preconditioning::kAuto;
+  // A coarse space from the start: what needs_coarse_space() said of an earlier ElasticBody of this mesh.
+  bool coarse_space = false;
   OperatorKind kind = OperatorKind::kAuto;
   // kAuto: the most a dense matrix is made for. Bodies that are not bulky take a finer far field and many products.
   std::size_t dense_bulky_unknowns = 6000, dense_unknowns = 12000;
   FastOptions fast;
-  // Make the coarse space of the fast operator with it instead of when the first load needs it: for a body that
-  // needed_coarse_space() before, so that a new operator solves as the old one would have.
-  bool coarse_space = false;
   bool double_storage = false;  // of the dense operator; float storage costs 3e-8 .. 2e-6 of the stress
   std::size_t max_bytes = std::size_t{6} << 30;  // refuse larger operators
 };
@@ -75,7 +74,6 @@ class ElasticBody {
   // material alone: where the iteration starts from, and what a solution is added to.
   ElasticSolution solve(const Load& load, const ParticularSolution& particular,
                         SolutionHistory* history = nullptr) const;
-  bool needed_coarse_space() const;
 
   const Boundary& boundary() const { return boundary_; }
   const Elastic& material() const { return material_; }
@@ -83,6 +81,9 @@ class ElasticBody {
   const LinearOperator& system() const { return *operator_; }  // without completion
   bool dense() const { return make_factors_ != nullptr; }      // a dense matrix, or the fast multipole method
   std::size_t bytes() const;                                   // of the operator, its factors and coarse space
+  // A solve has found that plain iterations do not converge, or a coarse space was there from the start. Later solves
+  // begin with it: a body made anew must be told, to solve bit for bit as this one would.
+  bool needs_coarse_space() const;
   const Reconstruction& reconstruction() const { return reconstruction_; }
   const Testing& testing() const { return testing_; }
 

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "engine/mesh/attributes.h"
 #include "kernels/core/error.h"
+#include "kernels/core/file.h"
 
 namespace sherd {
 namespace {
@@ -19,28 +17,6 @@ void append(std::string& out, T value) {
   std::memcpy(bytes, &value, sizeof(T));
   if constexpr (std::endian::native == std::endian::big) std::reverse(bytes, bytes + sizeof(T));
   out.append(bytes, sizeof(T));
-}
-
-void save(const std::string& content, const std::string& path) {
-  const std::string partial = path + ".partial";
-  errno = 0;
-  std::ofstream file(partial, std::ios::binary | std::ios::trunc);
-  file.write(content.data(), static_cast<std::streamsize>(content.size()));
-  file.close();
-  std::error_code ignored;
-  if (!file) {
-    const std::string why = errno != 0 ? std::strerror(errno) : "write failed";
-    std::filesystem::remove(partial, ignored);
-    throw InputError(
-        fmt::format("{}: cannot write the mesh ({}); check the folder, its permissions and free space", path, why));
-  }
-  std::error_code error;
-  std::filesystem::rename(partial, path, error);
-  if (error) {
-    std::filesystem::remove(partial, ignored);
-    throw InputError(
-        fmt::format("{}: cannot put the written mesh in place ({}); choose another name", path, error.message()));
-  }
 }
 
 bool has_cracks(const SurfaceMesh& mesh) {
@@ -98,7 +74,7 @@ void write_ply(const SurfaceMesh& mesh, const std::string& path, PlyPrecision pr
       for (std::size_t i = 0; i < c.width(); ++i) append(out, c.value[c.width() * t + i]);
     }
   }
-  save(out, path);
+  replace_file(path, out);
 }
 
 void write_obj(const SurfaceMesh& mesh, const std::string& path) {
@@ -131,7 +107,7 @@ void write_obj(const SurfaceMesh& mesh, const std::string& path) {
     out += "g crack\n";
     faces(FaceKind::kCrack);
   }
-  save(out, path);
+  replace_file(path, out);
 }
 
 }  // namespace sherd

@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "engine/scene/load_body.h"
+#include "kernels/core/archive.h"
 #include "kernels/core/error.h"
+#include "kernels/core/file.h"
 
 namespace sherd {
 namespace {
@@ -149,6 +151,17 @@ void read_view(TableReader& root, Scene& scene) {
           [&](TableReader& r) { scene.light.direction = read_direction(r, "direction", scene.light.direction); });
 }
 
+std::uint64_t digest_of(const TomlValue& root, const Scene& scene) {
+  std::uint64_t sum = digest(full_text(root));
+  const auto add_file = [&](const std::filesystem::path& file) { sum = digest(read_bytes(file), sum); };
+  for (const SceneBody& body : scene.bodies) {
+    if (const auto* mesh = std::get_if<MeshSpec>(&body.source)) add_file(mesh->file);
+    for (const SceneCrack& crack : body.cracks)
+      if (const auto* file = std::get_if<std::filesystem::path>(&crack.guide)) add_file(*file);
+  }
+  return sum;
+}
+
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& file) {
@@ -165,6 +178,7 @@ Scene load_scene(const std::filesystem::path& file) {
   read_output(root, scene);
   root.finish();
   problems.raise();
+  scene.digest = digest_of(root_table, scene);
   return scene;
 }
 

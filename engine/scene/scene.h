@@ -1,6 +1,7 @@
 // A scene: everything a run is told, checked before anything is made. Read from TOML (scenes/README.md lists the keys).
 // SI units; world: right-handed, y up.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -182,10 +183,12 @@ struct SceneOutput {
 
 struct Scene {
   std::filesystem::path file;  // as given to load_scene
-  Vec3 gravity{0, -9.81, 0};   // m/s^2
-  Real time_step = 1e-3;       // s
-  Real duration = 2;           // s
-  Real frame_rate = 60;        // frames per second of simulated time, at most one a step
+  // Of what the file says (not of comments and layout) and of the mesh files it names: another scene has another one.
+  std::uint64_t digest = 0;
+  Vec3 gravity{0, -9.81, 0};  // m/s^2
+  Real time_step = 1e-3;      // s
+  Real duration = 2;          // s
+  Real frame_rate = 60;       // frames per second of simulated time, at most one a step
   std::vector<SceneBody> bodies;
   std::vector<SceneLoad> loads;
   SceneGround ground;

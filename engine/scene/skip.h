@@ -38,18 +38,11 @@ inline constexpr std::array<SkipSwitch, 10> kSkipSwitches{
      {Skip::kUploads, "uploads", "meshes sent to the renderer"}}};
 
 // Which switches are on: all, unless a scene or the command says otherwise.
-class SceneSkip {
- public:
-  bool operator[](Skip s) const { return on_[static_cast<std::size_t>(s)]; }
-  void set(Skip s, bool on) { on_[static_cast<std::size_t>(s)] = on; }
+struct SceneSkip {
+  bool operator[](Skip s) const { return !off[static_cast<std::size_t>(s)]; }
+  void set(Skip s, bool on) { off[static_cast<std::size_t>(s)] = !on; }
 
- private:
-  static constexpr std::size_t kCount = kSkipSwitches.size();
-  std::array<bool, kCount> on_ = [] {
-    std::array<bool, kCount> all{};
-    all.fill(true);
-    return all;
-  }();
+  std::array<bool, kSkipSwitches.size()> off{};
 };
 
 }  // namespace sherd

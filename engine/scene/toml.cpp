@@ -81,6 +81,19 @@ std::string joined(const std::vector<std::string>& parts, std::string_view open,
   return text;
 }
 
+}  // namespace
+
+TomlValue parse_toml_file(const std::filesystem::path& file) {
+  const std::string text = read_text(file);
+  try {
+    return convert(toml::parse(std::string_view(text), file.string()));
+  } catch (const toml::parse_error& error) {
+    const toml::source_position place = error.source().begin;
+    throw InputError(
+        fmt::format("{}:{}:{}: {}", file.string(), place.line, place.column, std::string_view(error.description())));
+  }
+}
+
 std::string full_text(const TomlValue& value) {
   using Kind = TomlValue::Kind;
   std::vector<std::string> parts;
@@ -106,19 +119,6 @@ std::string full_text(const TomlValue& value) {
       return joined(parts, "{", "}");
   }
   return {};
-}
-
-}  // namespace
-
-TomlValue parse_toml_file(const std::filesystem::path& file) {
-  const std::string text = read_text(file);
-  try {
-    return convert(toml::parse(std::string_view(text), file.string()));
-  } catch (const toml::parse_error& error) {
-    const toml::source_position place = error.source().begin;
-    throw InputError(
-        fmt::format("{}:{}:{}: {}", file.string(), place.line, place.column, std::string_view(error.description())));
-  }
 }
 
 std::string to_text(const TomlValue& value) {

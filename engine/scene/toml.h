@@ -28,7 +28,9 @@ struct TomlEntry {
 // The root table. Throws InputError for a file that is missing, no file, empty or unreadable, and for bad TOML as
 // "file:line:column: message".
 TomlValue parse_toml_file(const std::filesystem::path& file);
-// As it would stand in a file, shortened to at most about 60 characters, for messages.
+// As it would stand in a file, on one line, without comments, keys in the order of their names.
+std::string full_text(const TomlValue& value);
+// The same, shortened to at most about 60 characters, for messages.
 std::string to_text(const TomlValue& value);
 
 }  // namespace sherd

@@ -74,7 +74,6 @@ void solve(Solid& solid, const MassProperties& mass, const Elastic& material, co
   {
     const Stopwatch watch(seconds.solve, "solve");
     s.solution = elastic->solve(s.load, *s.particular, options.skip[Skip::kWarmStart] ? &solid.history : nullptr);
-    solid.needs_coarse_space = elastic->needed_coarse_space();
   }
   record.krylov = s.solution.krylov, record.incompatibility = s.solution.incompatibility;
   record.factored = s.solution.factored, record.warm = s.solution.warm, record.reason = s.solution.reason;

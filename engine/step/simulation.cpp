@@ -22,15 +22,31 @@ Colour to_colour(const Vec3& v) {
 
 struct Simulation::Impl {
   World world;
-  std::size_t frames_served = 0;
-  Frame last_frame;
-  std::vector<std::size_t> last_frame_roots;  // scene body of each body of last_frame
+  // What snapshots leave behind; part of a checkpoint as RunState is.
+  struct Frames {
+    std::size_t served = 0;
+    Frame last;
+    std::vector<std::size_t> last_roots;  // scene body of each body of `last`
+  } frames;
 
   Impl(const Scene& scene, const SimulationOptions& options) : world(scene, options.threads) {}
+
+  void keep(Archive& a) {
+    archive(a, frames);
+    world.keep(a);
+  }
 };
 
 Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
-    : impl_(std::make_unique<Impl>(scene, options)) {}
+    : impl_(std::make_unique<Impl>(scene, options)) {
+  impl_->world.start();
+}
+Simulation::Simulation(const Scene& scene, const SimulationOptions& options, std::string_view state)
+    : impl_(std::make_unique<Impl>(scene, options)) {
+  Archive a(state);
+  impl_->keep(a);
+  a.finish();
+}
 Simulation::~Simulation() = default;
 
 bool Simulation::done() const {
@@ -43,26 +59,38 @@ Real Simulation::time() const {
   return impl_->world.time();
 }
 
+std::size_t Simulation::bodies() const {
+  return impl_->world.bodies.size();
+}
+std::size_t Simulation::steps() const {
+  return impl_->world.steps;
+}
+std::string Simulation::state() {
+  Archive a;
+  impl_->keep(a);
+  return a.take();
+}
+
 std::size_t Simulation::frame_count() const {
   return static_cast<std::size_t>(std::floor(impl_->world.scene.duration * impl_->world.scene.frame_rate + 1e-9)) + 1;
 }
 
 bool Simulation::frame_due() const {
-  const Real next = static_cast<Real>(impl_->frames_served) / impl_->world.scene.frame_rate;
-  return impl_->frames_served < frame_count() && impl_->world.time() >= next - 0.5 * impl_->world.scene.time_step;
+  const Real next = static_cast<Real>(impl_->frames.served) / impl_->world.scene.frame_rate;
+  return impl_->frames.served < frame_count() && impl_->world.time() >= next - 0.5 * impl_->world.scene.time_step;
 }
 
 Frame Simulation::snapshot() {
   Frame frame;
-  frame.index = impl_->frames_served++;
+  frame.index = impl_->frames.served++;
   impl_->world.certify_frame(frame.index);
   frame.time = impl_->world.time();
-  impl_->last_frame_roots.clear();
+  impl_->frames.last_roots.clear();
   for (std::size_t i = 0; i < impl_->world.bodies.size(); ++i) {
     const Body& b = impl_->world.bodies[i];
     const std::size_t scene_index = impl_->world.companions[i].scene_body;
     const SceneBody& s = impl_->world.scene.bodies[scene_index];
-    impl_->last_frame_roots.push_back(scene_index);
+    impl_->frames.last_roots.push_back(scene_index);
     FrameBody f;
     f.id = b.id.value, f.name = b.name, f.mesh = b.mesh, f.mesh_version = b.mesh_version;
     f.parent = b.parent == b.id ? kNone : b.parent.value;
@@ -74,20 +102,20 @@ Frame Simulation::snapshot() {
   }
   for (const FrameBody& b : frame.bodies) {
     const auto same = [&](const FrameBody& o) { return o.id == b.id && o.mesh_version == b.mesh_version; };
-    const bool there = std::any_of(impl_->last_frame.bodies.begin(), impl_->last_frame.bodies.end(), same);
+    const bool there = std::any_of(impl_->frames.last.bodies.begin(), impl_->frames.last.bodies.end(), same);
     impl_->world.record.skips.add(Skip::kUploads, there && impl_->world.scene.skip[Skip::kUploads]);
   }
-  impl_->last_frame = frame;
+  impl_->frames.last = frame;
   return frame;
 }
 
 Frame Simulation::material_snapshot() const {
-  Frame frame = impl_->last_frame;
+  Frame frame = impl_->frames.last;
   const std::size_t shown = impl_->world.scene.output.material_view.value_or(0);
   frame.bodies.clear();
-  for (std::size_t i = 0; i < impl_->last_frame.bodies.size(); ++i) {
-    if (impl_->last_frame_roots[i] != shown) continue;
-    frame.bodies.push_back(impl_->last_frame.bodies[i]);
+  for (std::size_t i = 0; i < impl_->frames.last.bodies.size(); ++i) {
+    if (impl_->frames.last_roots[i] != shown) continue;
+    frame.bodies.push_back(impl_->frames.last.bodies[i]);
     frame.bodies.back().rotation = Mat3::identity(), frame.bodies.back().translation = Vec3{};
     frame.bodies.back().opacity = 0.35f;
   }
@@ -129,7 +157,7 @@ View Simulation::material_view() const {
 }
 
 std::string Simulation::stats_json() const {
-  return to_json(impl_->world.record);
+  return to_json(impl_->world.record, done());
 }
 std::vector<std::string> Simulation::take_messages() {
   return std::exchange(impl_->world.pending, {});

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "engine/frame/frame.h"
 #include "engine/scene/scene.h"
@@ -16,11 +17,17 @@ class Simulation {
  public:
   // Loads and prepares all bodies. Throws InputError when a mesh cannot be used.
   Simulation(const Scene& scene, const SimulationOptions& options);
+  // Goes on from what state() gave for this scene, bit for bit as if it had not stopped. Throws ArchiveError when the
+  // bytes do not fit, InputError when the bodies come out otherwise than when the run began.
+  Simulation(const Scene& scene, const SimulationOptions& options, std::string_view state);
   ~Simulation();
 
   bool done() const;  // the scene's duration is reached
   void step();
   Real time() const;  // s
+  std::size_t steps() const, bodies() const;
+  // All that the run goes on from, between two steps: after snapshot() when a frame is due. Of this machine and build.
+  std::string state();
   // True at the start and whenever simulated time has passed the next frame; snapshot() then serves it.
   bool frame_due() const;
   // Of the world, now; consumes the due frame and certifies every mesh it shows, for stats_json().

@@ -54,7 +54,7 @@ const SurfaceRecovery& Solid::recovery() {
 const ElasticBody& Solid::elastic(const Elastic& material, const ElasticOptions& options) {
   if (!elastic_) {
     ElasticOptions o = options;
-    o.coarse_space = needs_coarse_space;
+    o.coarse_space = coarse_space;
     elastic_ = std::make_unique<ElasticBody>(*clean_, material, o);
   }
   return *elastic_;

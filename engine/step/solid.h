@@ -24,11 +24,19 @@ struct StoppedCrack {
   std::vector<std::int32_t> met;  // stopped cracks it ran into, where it waits for them to go through
 };
 
+// What a Solid is beside its mesh and lengths: not to be found from the mesh alone, so part of a checkpoint. A member
+// added here is kept; what Solid itself builds must follow from the mesh and these.
+struct SolidState {
+  std::vector<StoppedCrack> partial;  // cracks that stopped inside
+  bool coarse_space = false;          // solves of this mesh need one, as an earlier solve found
+  SolutionHistory history;            // of solves of this mesh, where the next ones start from
+};
+
 // A crack that stopped inside is kept as a sheet beside the *clean* mesh (without its notch): the stress is solved on
 // the clean mesh and the sheet grows on from it later (design O13). The two walls of a notch lie a thousandth of an
 // edge apart, and a displacement formulation degenerates there; so a stopped crack is seen and resumes at the lower
 // propagation strength, but does not redistribute stress before it goes through.
-class Solid {
+class Solid : public SolidState {
  public:
   // `edge_length`: of the mesh and of cracks in it, m; 0: the root's.
   Solid(std::shared_ptr<const SurfaceMesh> clean, const RootScale& root, Real edge_length = 0)
@@ -38,7 +46,6 @@ class Solid {
   const std::shared_ptr<const SurfaceMesh>& shared_mesh() const { return clean_; }
   const RootScale& root() const { return root_; }
   Real edge_length() const { return edge_length_; }
-  std::vector<StoppedCrack> partial;  // cracks that stopped inside
 
   Real mesh_volume();  // m^3
   Real diagonal();     // of the bounding box, m
@@ -53,12 +60,11 @@ class Solid {
   const SurfaceRecovery& recovery();
   // Built with the first call: one material a body.
   const ElasticBody& elastic(const Elastic& material, const ElasticOptions& options);
-  // What solves of this mesh leave to the next: earlier solutions, and whether the operator needed its coarse space.
-  SolutionHistory history;
-  bool needs_coarse_space = false;
   bool has_elastic() const { return elastic_ != nullptr; }
   std::size_t elastic_bytes() const { return elastic_ ? elastic_->bytes() : 0; }
-  void drop_elastic() { elastic_.reset(); }  // frees the dense operator
+  // After solves, and before the operator goes: what they taught.
+  void learn() { coarse_space = coarse_space || (elastic_ && elastic_->needs_coarse_space()); }
+  void drop_elastic() { learn(), elastic_.reset(); }  // frees the dense operator
 
  private:
   std::shared_ptr<const SurfaceMesh> clean_;

@@ -1,5 +1,7 @@
 #include "engine/step/stats.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 namespace sherd {
@@ -219,14 +221,20 @@ Json seconds_json(const RunRecord& r) {
 
 std::size_t RunRecord::certificate_of(std::uint32_t body_id, std::uint32_t mesh_version, const std::string& body,
                                       const SurfaceMesh& mesh) {
-  const auto [at, fresh] = certified_.try_emplace({body_id, mesh_version}, certificates.size());
+  const auto [at, fresh] = certified.try_emplace({body_id, mesh_version}, certificates.size());
   if (fresh) certificates.push_back({body_id, mesh_version, body, certify(mesh)});
   return at->second;
 }
 
-std::string to_json(const RunRecord& r) {
+std::string digest_text(std::uint64_t sum) {
+  return fmt::format("{:016x}", sum);
+}
+
+std::string to_json(const RunRecord& r, bool complete) {
   Json j;
   j["scene"] = r.scene;
+  j["scene_digest"] = digest_text(r.scene_digest);
+  j["complete"] = complete;
   j["messages"] = r.messages;
   j["totals"] = totals_json(r);
   j["skips"] = skips_json(r);

@@ -65,7 +65,8 @@ struct FrameRecord {
 };
 
 struct RunRecord {
-  std::string scene;
+  std::string scene;               // file name
+  std::uint64_t scene_digest = 0;  // Scene::digest
   std::vector<std::string> messages;
   std::vector<MeshRecord> meshes;
   std::vector<StepRecord> steps;
@@ -81,11 +82,11 @@ struct RunRecord {
   // Index of the mesh's certificate, made when it is asked for first.
   std::size_t certificate_of(std::uint32_t body_id, std::uint32_t mesh_version, const std::string& body,
                              const SurfaceMesh& mesh);
-
- private:
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> certified_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> certified;  // body and mesh version -> that index
 };
 
-std::string to_json(const RunRecord& record);
+// `complete`: the run has reached the scene's duration.
+std::string to_json(const RunRecord& record, bool complete);
+std::string digest_text(std::uint64_t digest);  // 16 hexadecimal digits, as in stats.json
 
 }  // namespace sherd

@@ -31,8 +31,8 @@ void require_solvable(const Body& body, Real edge_length) {
       body.name, body.mesh->triangle_count(), bytes >> 20, allowed >> 20, edge_length, edge));
 }
 
-std::vector<World::HeldLoad> held_loads(const Scene& scene, std::size_t scene_body, const SurfaceMesh& mesh) {
-  std::vector<World::HeldLoad> held;
+std::vector<HeldLoad> held_loads(const Scene& scene, std::size_t scene_body, const SurfaceMesh& mesh) {
+  std::vector<HeldLoad> held;
   for (std::size_t k = 0; k < scene.loads.size(); ++k) {
     const SceneLoad& s = scene.loads[k];
     if (s.body != scene_body) continue;
@@ -50,7 +50,7 @@ std::vector<World::HeldLoad> held_loads(const Scene& scene, std::size_t scene_bo
 }  // namespace
 
 World::World(const Scene& s, int thread_count) : scene(s), threads(thread_count) {
-  record.scene = s.file.filename().string();
+  record.scene = s.file.filename().string(), record.scene_digest = s.digest;
   record.threads = thread_count;
   record.skip = s.skip;
   const Stopwatch watch(record.prepare_seconds, "prepare");
@@ -60,10 +60,33 @@ World::World(const Scene& s, int thread_count) : scene(s), threads(thread_count)
   if (!s.skip[Skip::kSleep]) rigid.sleep_speed = 0;
   pending = record.messages;
   start_box = world_box();
-  for (const Body& b : bodies) record.start_volume += b.mass.volume;
-  StepRecord start;
-  run_guides(start);
-  if (start.cracks > 0) record.steps.push_back(std::move(start));
+  prepared = kDigestStart;
+  for (const Body& b : bodies) record.start_volume += b.mass.volume, prepared = digest(*b.mesh, prepared);
+}
+
+void World::start() {
+  const Stopwatch watch(record.prepare_seconds, "prepare");
+  StepRecord first;
+  run_guides(first);
+  if (first.cracks > 0) record.steps.push_back(std::move(first));
+}
+
+void World::keep(Archive& a) {
+  const std::uint64_t here = prepared;
+  const Real prepare_seconds = record.prepare_seconds;
+  const int thread_count = record.threads;
+  if (!a.reading()) contact_history = cache.history();
+  archive(a, static_cast<RunState&>(*this));
+  if (!a.reading()) return;
+  if (prepared != here)
+    throw InputError(
+        "the meshes of the bodies come out otherwise than when the run began: a file they are read from has changed, "
+        "or "
+        "this machine computes differently; start anew, without --resume");
+  cache.restore(bodies, contact_history);
+  record.prepare_seconds += prepare_seconds;
+  record.scene = scene.file.filename().string();
+  record.threads = thread_count;
 }
 
 Box World::world_box() const {
@@ -82,7 +105,8 @@ std::size_t World::index_of(BodyId id) const {
 void World::add_body(std::size_t scene_body) {
   const SceneBody& s = scene.bodies[scene_body];
   BuiltBody built = build_body(s, BodyId{0});
-  Root root{scene_fields(s, *built.body.mesh), {}, std::vector<bool>(s.cracks.size(), false)};
+  Root root{scene_fields(s, *built.body.mesh), {}};
+  guided.emplace_back(s.cracks.size(), false);
   if (!s.cracks.empty()) {
     const TriangleBvh bvh(*built.body.mesh);
     for (const SceneCrack& crack : s.cracks) root.guides.push_back(pinned(scene_guide(s, crack, built.messages), bvh));
@@ -119,7 +143,7 @@ void World::add_solids(const BuiltBody& built, std::size_t scene_body, const std
 
 const MeshRecord& World::record_mesh(std::size_t i) {
   Companion& companion = companions[i];
-  if (companion.mesh == kUnrecorded) {
+  if (companion.mesh == Companion::kUnrecorded) {
     const SurfaceMesh& mesh = companion.solid->mesh();
     const ResolutionRule& rule = resolution_rule(scene.solver);
     MeshRecord m;

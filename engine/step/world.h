@@ -1,63 +1,40 @@
-// The state of a run and what changes it: steps of motion, events of fracture. Simulation is its face.
+// A run and what changes it: steps of motion, events of fracture. Simulation is its face.
 #pragma once
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "engine/load/surface_load.h"
 #include "engine/material/scalar_field.h"
 #include "engine/scene/scene.h"
 #include "engine/step/build_bodies.h"
-#include "engine/step/stats.h"
+#include "engine/step/run_state.h"
 #include "kernels/core/parallel.h"
 
 namespace sherd {
 
-struct World {
-  static constexpr std::size_t kUnrecorded = static_cast<std::size_t>(-1);
-
-  // A load of the scene on a body, spread over the surface it had at the start.
-  struct HeldLoad {
-    AppliedLoad load;
-    AppliedTraction traction;
-  };
-  // Beside each body, in the same order.
-  struct Companion {
-    std::shared_ptr<Solid> solid;
-    std::size_t scene_body = 0;
-    std::vector<HeldLoad> loads = {};     // none once it has broken
-    std::vector<bool> solved_loads = {};  // which of them acted in the last solve of this mesh
-    std::size_t mesh = kUnrecorded;       // index into RunRecord::meshes
-    std::size_t last_solve = 0;           // step, for dropping operators
-    int failed_solves = 0;                // on this mesh
-    Real last_tension = 0;                // of the last solve of this mesh, Pa
-  };
+struct World : RunState {
   // What belongs to a body of the scene and all its fragments.
   struct Root {
     MaterialFields fields;
     std::vector<GuideSpec> guides;  // of SceneBody::cracks
-    std::vector<bool> guided;       // which of them have run
   };
 
   Scene scene;
   ThreadLimit threads;
-  std::vector<Body> bodies;
-  std::vector<Companion> companions;
   std::vector<Root> roots;  // one a scene body
   GroundPlane ground;
   RigidOptions rigid;
   ContactCache cache;
-  RigidState rigid_state;
-  RunRecord record;
-  std::vector<Contact> contacts;
-  std::size_t steps = 0;
-  std::uint32_t next_id = 0;
-  std::int32_t next_crack = 0;
-  std::vector<std::string> pending, pending_warnings;  // messages nobody has taken yet
   Box start_box;
 
+  // Loads and prepares all bodies.
   World(const Scene& scene, int threads);
+  // Before the first step of a run that is not restored: the guided cracks of time 0.
+  void start();
   void advance();
+  // The state between two steps, written or read. Reading takes it into a World fresh from its constructor with the
+  // scene it was written from; ArchiveError when it does not fit, InputError when the bodies come out otherwise.
+  void keep(Archive& a);
   Real time() const { return static_cast<Real>(steps) * scene.time_step; }
   // Certificates of all meshes shown now, each made once, and the balance of all volume; for stats.json.
   void certify_frame(std::size_t index);

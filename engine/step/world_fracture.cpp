@@ -181,7 +181,7 @@ void World::apply_shapes(std::size_t i, FractureResult& result, EventRecord& eve
                       .scene_body = companion.scene_body,
                       .loads = same_body ? companion.loads : std::vector<HeldLoad>{},
                       .solved_loads = clean_kept ? companion.solved_loads : std::vector<bool>{},
-                      .mesh = clean_kept ? companion.mesh : kUnrecorded,
+                      .mesh = clean_kept ? companion.mesh : Companion::kUnrecorded,
                       .last_solve = companion.last_solve,
                       .failed_solves = clean_kept ? companion.failed_solves : 0,
                       .last_tension = clean_kept ? companion.last_tension : 0});
@@ -295,8 +295,8 @@ void World::report(const EventRecord& event) {
 void World::run_guides(StepRecord& step) {
   for (std::size_t root = 0; root < roots.size(); ++root)
     for (std::size_t k = 0; k < roots[root].guides.size(); ++k) {
-      if (roots[root].guided[k] || scene.bodies[root].cracks[k].time > time()) continue;
-      roots[root].guided[k] = true;
+      if (guided[root][k] || scene.bodies[root].cracks[k].time > time()) continue;
+      guided[root][k] = true;
       std::vector<BodyId> due;  // by id: bodies shift while fragments replace their parents
       for (std::size_t i = 0; i < bodies.size(); ++i)
         if (companions[i].scene_body == root && cannot_break(i).empty()) due.push_back(bodies[i].id);

@@ -145,6 +145,26 @@ TEST(FastOperator, BodiesSolvedOnItDeformAsOnTheDenseOne) {
   }
 }
 
+TEST(FastOperator, ABodyMadeAnewWithACoarseSpaceSolvesBitForBitAsTheOneThatLearnedItNeedsOne) {
+  const SurfaceMesh mesh = make_plate(2, 0.2, 0.1, 0.14);  // slender, though its walls are not
+  Load load;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) load.face_traction.push_back({0, mesh.centroid(t).x, 0});
+  ElasticOptions options;
+  options.kind = OperatorKind::kFast, options.krylov.tolerance = 1e-12;
+  const ElasticBody body(mesh, kMaterial, options);
+  EXPECT_FALSE(body.needs_coarse_space());
+  const ElasticSolution first = body.solve(load, body.particular(load));
+  ASSERT_TRUE(first.ok) << first.reason;
+  ASSERT_TRUE(body.needs_coarse_space()) << first.krylov.iterations;
+  const ElasticSolution later = body.solve(load, body.particular(load));
+  EXPECT_LT(later.krylov.iterations, first.krylov.iterations);
+  options.coarse_space = true;
+  const ElasticBody anew(mesh, kMaterial, options);
+  const ElasticSolution told = anew.solve(load, anew.particular(load));
+  EXPECT_EQ(told.displacement, later.displacement);
+  EXPECT_EQ(told.krylov.iterations, later.krylov.iterations);
+}
+
 TEST(FastOperator, TooLargeAnOperatorIsRefusedWithItsSize) {
   const SurfaceMesh mesh = make_sphere(1, 0.3);
   ElasticOptions options;

@@ -57,15 +57,15 @@ TEST(SolutionHistory, KeepsTheLatestAndOnlyWhatIsNew) {
   SolutionHistory history;
   const Vector a = random_vector(50, random);
   history.add(a, twice(a)), history.add(twice(a), twice(twice(a)));
-  EXPECT_EQ(history.pairs().size(), 1u);
+  EXPECT_EQ(history.pairs.size(), 1u);
   history.add(Vector(50), Vector(50));
-  EXPECT_EQ(history.pairs().size(), 1u);
+  EXPECT_EQ(history.pairs.size(), 1u);
   Vector last;
   for (std::size_t i = 0; i < 2 * SolutionHistory::kMost; ++i) {
     last = random_vector(50, random);
     history.add(last, twice(last));
   }
-  EXPECT_EQ(history.pairs().size(), SolutionHistory::kMost);
+  EXPECT_EQ(history.pairs.size(), SolutionHistory::kMost);
   Vector x(50);
   EXPECT_TRUE(history.guess(last, x));
   // `last` is in the span of what is kept: its older parts, which fell out, were taken out of it before.

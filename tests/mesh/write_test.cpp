@@ -101,7 +101,7 @@ TEST_F(Write, ErrorsNameTheFile) {
     } catch (const InputError& e) {
       EXPECT_NE(std::string(e.what()).find(file), std::string::npos) << e.what();
     }
-  EXPECT_FALSE(std::filesystem::exists(path("folder.ply.partial")));
+  EXPECT_FALSE(std::filesystem::exists(path("folder.ply.part")));
 }
 
 }  // namespace

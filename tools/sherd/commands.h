@@ -18,6 +18,13 @@ struct CheckOptions {
 // Prints what the mesh is, what repair did, and what it became. 2 when it cannot be repaired.
 int check_command(const CheckOptions& options);
 
+// One of them is positive, or none: no checkpoints but at the end of a run that is interrupted.
+struct CheckpointEvery {
+  std::size_t steps = 0;
+  Real seconds = 0;  // simulated
+  bool wanted() const { return steps > 0 || seconds > 0; }
+};
+
 struct RunOptions {
   std::filesystem::path scene;
   std::filesystem::path out;    // empty: out/NAME for scene NAME.toml
@@ -28,8 +35,12 @@ struct RunOptions {
   bool wireframe = false;            // edges of the triangles over the bodies, in every picture
   std::vector<std::string> no_skip;  // keys of [skip] to turn off; "all": every one
   bool quiet = false;
+  CheckpointEvery checkpoint_every;
+  bool resume = false;  // go on from the last checkpoint in `out`
 };
 int run_command(const RunOptions& options);
+// "20": steps, "0.1s": simulated time. InputError for anything else.
+CheckpointEvery parse_checkpoint_every(const std::string& text);
 
 struct StressOptions {
   std::filesystem::path mesh;
@@ -49,7 +60,8 @@ struct StressOptions {
 // then say why, and the table is not written.
 int stress_command(const StressOptions& options);
 
-// SIGINT and SIGTERM only set a flag from here on; a second one ends the program at once.
+// SIGINT and SIGTERM only set a flag from here on; a second one ends the program at once. A limit on file sizes is an
+// error of the write that meets it, no longer a signal.
 void catch_interrupts();
 bool interrupted();
 

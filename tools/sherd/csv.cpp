@@ -116,21 +116,4 @@ long long CsvTable::integer(std::size_t row, std::size_t column) const {
   return static_cast<long long>(value);
 }
 
-void write_text_file(const fs::path& path, const std::string& text) {
-  const fs::path temporary = path.string() + ".part";
-  bool good = false;
-  {
-    std::ofstream stream(temporary, std::ios::binary);
-    stream << text;
-    stream.flush();
-    good = static_cast<bool>(stream);
-  }
-  std::error_code error;
-  if (good) fs::rename(temporary, path, error);
-  if (good && !error) return;
-  std::error_code ignored;
-  fs::remove(temporary, ignored);
-  throw InputError(fmt::format("{}: cannot be written; check the folder and the space on the disk", path.string()));
-}
-
 }  // namespace sherd

@@ -35,7 +35,4 @@ class CsvTable {
   std::vector<std::size_t> line_;  // of each row, from 1
 };
 
-// Writes under a temporary name and renames: a half-written file never bears the final name. InputError names the file.
-void write_text_file(const std::filesystem::path& path, const std::string& text);
-
 }  // namespace sherd

@@ -17,6 +17,7 @@ extern "C" void note_signal(int signal) {
 void catch_interrupts() {
   std::signal(SIGINT, note_signal);
   std::signal(SIGTERM, note_signal);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interrupted() {

@@ -12,11 +12,13 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   sherd run scenes/bunny.toml --out out/bunny
   sherd run scenes/plate_and_goblet.toml --threads 1 --frames 30
+  sherd run scenes/bunny.toml --checkpoint-every 50   (again, after a stop, with --resume)
   sherd check bunny.obj
   sherd check --json --max-hole 0.02 scan.ply
   sherd stress bar.ply --traction t.csv --young 7e10 --poisson 0.2 --points p.csv --out stress.csv --json stats.json
 
-Exit codes: 0 success, 2 bad input (scene, mesh, option), 1 failure, 130 ended by Ctrl-C with everything so far on disk.
+Exit codes: 0 success, 2 bad input (scene, mesh, option) or output that cannot be written, 1 failure, 130 ended by
+Ctrl-C with everything so far on disk.
 Scene files are described in scenes/README.md.)";
 
 struct Choice {
@@ -24,6 +26,7 @@ struct Choice {
   CheckOptions check;
   StressOptions stress;
   bool no_render = false;
+  std::string checkpoint_every;
 };
 
 void add_run(CLI::App& app, Choice& choice) {
@@ -42,6 +45,10 @@ void add_run(CLI::App& app, Choice& choice) {
                   "Do work that the scene does not need: keys of [skip], or all; to see what skipping saves")
       ->delimiter(',')
       ->check(CLI::IsMember(skips));
+  run->add_option("--checkpoint-every", choice.checkpoint_every,
+                  "Keep what --resume needs: every so many steps (20), or so much simulated time (0.1s)");
+  run->add_flag("--resume", choice.run.resume,
+                "Go on from the last checkpoint in --out; from the start when there is none yet");
   run->add_flag("--quiet", choice.run.quiet, "Only errors");
 }
 
@@ -94,6 +101,7 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? kSuccess : kBadInput;
   }
   choice.run.render = !choice.no_render;
+  if (!choice.checkpoint_every.empty()) choice.run.checkpoint_every = parse_checkpoint_every(choice.checkpoint_every);
   if (app.got_subcommand("stress")) return stress_command(choice.stress);
   return app.got_subcommand("check") ? check_command(choice.check) : run_command(choice.run);
 }

@@ -40,7 +40,8 @@ void Progress::update(Real time, std::size_t bodies, std::size_t frames) {
   tenths_ = tenths;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   // A few percent of the run must lie behind before the rest can be estimated from it.
-  const std::string left = part > 0.02 ? "about " + duration_text(elapsed * (1 - part) / part) + " left" : "";
+  const Real done = part - begun_ / duration_;
+  const std::string left = done > 0.02 ? "about " + duration_text(elapsed * (1 - part) / done) + " left" : "";
   clear_line();
   std::printf("%3.0f %%  %.3f of %.3f s, %zu %s, %zu frames, %s%s%s%s", 100 * part, time, duration_, bodies,
               bodies == 1 ? "body" : "bodies", frames, duration_text(elapsed).c_str(), left.empty() ? "" : ", ",

@@ -15,6 +15,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  // Of a run that goes on: what lies behind took no time here.
+  void begin_at(Real time) { begun_ = time; }
   // Call after every step; prints on a terminal at most ten times a second, elsewhere at every tenth of the run.
   void update(Real time, std::size_t bodies, std::size_t frames);
   // A line of its own.
@@ -26,7 +28,7 @@ class Progress {
   using Clock = std::chrono::steady_clock;
   void clear_line();
 
-  Real duration_;
+  Real duration_, begun_ = 0;
   bool quiet_, terminal_;
   bool line_open_ = false;
   int tenths_ = 0;  // last tenth of the run that was printed

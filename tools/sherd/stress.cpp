@@ -8,6 +8,7 @@
 #include "engine/mesh/load_raw.h"
 #include "engine/stress/analysis.h"
 #include "kernels/core/error.h"
+#include "kernels/core/file.h"
 #include "kernels/core/parallel.h"
 #include "tools/sherd/commands.h"
 #include "tools/sherd/csv.h"
@@ -216,9 +217,8 @@ int stress_command(const StressOptions& o) {
   const AnalysisReport& report = analysis.report();
   warnings.insert(warnings.end(), report.warnings.begin(), report.warnings.end());
   for (const std::string& w : warnings) std::fprintf(stderr, "warning: %s\n", w.c_str());
-  if (solved) write_text_file(o.out, stress_table(points, stress));
-  if (!o.json.empty())
-    write_text_file(o.json, statistics(o, report, warnings, points.id.size(), loaded, now() - start));
+  if (solved) replace_file(o.out, stress_table(points, stress));
+  if (!o.json.empty()) replace_file(o.json, statistics(o, report, warnings, points.id.size(), loaded, now() - start));
   if (!solved) {
     std::fprintf(stderr, "%s: no result: the solver failed\n", o.mesh.string().c_str());
     return kFailure;
