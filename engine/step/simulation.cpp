@@ -56,6 +56,7 @@ Frame Simulation::snapshot() {
   frame.index = impl_->frames_served++;
   impl_->world.certify_frame(frame.index);
   frame.time = impl_->world.time();
+  if (const auto& scale = impl_->world.record.field; scale && scale->low < scale->high) frame.scale = scale;
   impl_->last_frame_roots.clear();
   for (std::size_t i = 0; i < impl_->world.bodies.size(); ++i) {
     const Body& b = impl_->world.bodies[i];
@@ -69,6 +70,7 @@ Frame Simulation::snapshot() {
     f.translation = b.pose.position - f.rotation * b.mass.centre;
     f.colour = s.colour ? to_colour(*s.colour) : palette(scene_index);
     f.crack_colour = s.crack_colour ? to_colour(*s.crack_colour) : Colour{0.62f, 0.30f, 0.20f};
+    if (frame.scale) f.field = impl_->world.companions[i].field;
     frame.bodies.push_back(std::move(f));
   }
   impl_->last_frame = frame;

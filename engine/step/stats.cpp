@@ -214,8 +214,10 @@ std::size_t RunRecord::certificate_of(std::uint32_t body_id, std::uint32_t mesh_
 
 std::string to_json(const RunRecord& r) {
   Json j;
-  j["scene"] = r.scene;
+  j["scene"] = r.scene, j["quality"] = r.quality;
   j["messages"] = r.messages;
+  if (r.field)
+    j["field"] = {{"name", r.field->name}, {"unit", r.field->unit}, {"low", r.field->low}, {"high", r.field->high}};
   j["totals"] = totals_json(r);
   j["seconds"] = seconds_json(r);
   j["meshes"] = Json::array();

@@ -64,14 +64,15 @@ struct FrameRecord {
 };
 
 struct RunRecord {
-  std::string scene;
+  std::string scene, quality;
   std::vector<std::string> messages;
   std::vector<MeshRecord> meshes;
   std::vector<StepRecord> steps;
   std::vector<EventRecord> events;
   std::vector<CertificateRecord> certificates;
   std::vector<FrameRecord> frames;
-  Real start_volume = 0;  // of all bodies, m^3
+  Real start_volume = 0;            // of all bodies, m^3
+  std::optional<FieldScale> field;  // what the colours of the pictures mean; low = high: nothing was found yet
   Real prepare_seconds = 0, certify_seconds = 0;
   int threads = 0;
 

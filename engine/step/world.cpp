@@ -51,11 +51,13 @@ std::vector<World::HeldLoad> held_loads(const Scene& scene, std::size_t scene_bo
 
 World::World(const Scene& s, int thread_count) : scene(s), threads(thread_count) {
   record.scene = s.file.filename().string();
+  record.quality = kQualityNames[static_cast<std::size_t>(s.quality)];
   record.threads = thread_count;
   const Stopwatch watch(record.prepare_seconds);
   for (std::size_t i = 0; i < s.bodies.size(); ++i) add_body(i);
   ground = {s.ground.enabled, s.ground.height, s.ground.restitution, s.ground.friction};
   rigid.dt = s.time_step, rigid.gravity = s.gravity;
+  if (s.output.field) record.field = field_scale(*s.output.field);
   pending = record.messages;
   start_box = world_box();
   for (const Body& b : bodies) record.start_volume += b.mass.volume;

@@ -25,12 +25,13 @@ struct World {
   struct Companion {
     std::shared_ptr<Solid> solid;
     std::size_t scene_body = 0;
-    std::vector<HeldLoad> loads = {};     // none once it has broken
-    std::vector<bool> solved_loads = {};  // which of them acted in the last solve of this mesh
-    std::size_t mesh = kUnrecorded;       // index into RunRecord::meshes
-    std::size_t last_solve = 0;           // step, for dropping operators
-    int failed_solves = 0;                // on this mesh
-    Real ratio_per_force = 0;             // largest stress over strength that solves of this mesh gave, 1/N
+    std::vector<HeldLoad> loads = {};                // none once it has broken
+    std::vector<bool> solved_loads = {};             // which of them acted in the last solve of this mesh
+    std::size_t mesh = kUnrecorded;                  // index into RunRecord::meshes
+    std::size_t last_solve = 0;                      // step, for dropping operators
+    int failed_solves = 0;                           // on this mesh
+    Real ratio_per_force = 0;                        // largest stress over strength that solves of this mesh gave, 1/N
+    std::shared_ptr<const SurfaceField> field = {};  // of the body's mesh, from its last solve
   };
   // What belongs to a body of the scene and all its fragments.
   struct Root {

@@ -35,11 +35,21 @@ void simulate(Simulation& simulation, RunWriter& writer, std::size_t frame_limit
   }
 }
 
+// A range is of the scene's own field.
+void show_field(SceneOutput& output, FieldKind kind) {
+  if (output.field && output.field->kind == kind) return;
+  SceneField field = output.field.value_or(SceneField{});
+  field.kind = kind;
+  field.range.reset();
+  output.field = field;
+}
+
 }  // namespace
 
 int run_command(const RunOptions& options) {
   catch_interrupts();
-  const Scene scene = load_scene(options.scene);
+  Scene scene = load_scene(options.scene, options.quality);
+  if (options.field) show_field(scene.output, *options.field);
   // Meshes are read and repaired here: nothing is written for a scene that cannot run.
   Simulation simulation(scene, {.threads = options.threads});
   const std::filesystem::path folder =
