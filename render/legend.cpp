@@ -77,8 +77,8 @@ std::string legend_number(Real value, const std::string& unit) {
 }
 
 void draw_legend(const FieldScale& scale, Image& image) {
-  const int dot = image.height / 360, height = image.height / 2, width = 10 * dot;
-  if (dot < 1 || image.width < 40 * width / 10) return;
+  const int dot = std::max(1, image.height / 320), height = image.height / 2, width = 10 * dot;
+  if (image.height < 160 || image.width < 20 * width) return;
   const int left = 2 * width, top = height / 2;
   fill(image, left - dot, top - dot, width + 2 * dot, height + 2 * dot, kInk);
   for (int y = 0; y < height; ++y)
