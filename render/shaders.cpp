@@ -261,7 +261,8 @@ void main() {
   // Clamped above as well: rounding makes a cosine exceed 1, and pow of a negative number is undefined.
   float facing = clamp(dot(n, v), 0.0, 1.0), fresnel = 0.04 + 0.96 * pow(1.0 - clamp(dot(h, v), 0.0, 1.0), 5.0);
   float rim = pow(1.0 - facing, 4.0);
-  vec3 gloss = (u_field != 0 ? 0.25 : 1.0) * u_gloss * (kKey * (sun * fresnel * 9.0 * pow(max(dot(n, h), 0.0), 48.0)) + 0.12 * rim * open * above);
+  vec3 gloss = u_gloss * (kKey * (sun * fresnel * 9.0 * pow(max(dot(n, h), 0.0), 48.0)) + 0.12 * rim * open * above);
+  if (u_field != 0) gloss *= 0.25;  // a highlight would read as another value
   vec3 colour = base * light + gloss;
 
   float alpha = 1.0;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/mesh/attributes.h"
-#include "kernels/core/error.h"
 
 namespace sherd {
 namespace {
@@ -73,8 +72,7 @@ std::shared_ptr<const SurfaceField> shown_field(const SceneField& wanted, Solid&
       for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
         field->displacement.push_back(wanted.deformation * state.displacement()[v]);
   }
-  SHERD_CHECK(std::all_of(field->value.begin(), field->value.end(), [](float v) { return std::isfinite(v); }),
-              "a field has values that are not finite");
+  if (!std::all_of(field->value.begin(), field->value.end(), [](float v) { return std::isfinite(v); })) return nullptr;
   return field;
 }
 

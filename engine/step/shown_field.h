@@ -11,6 +11,7 @@ namespace sherd {
 // The field of `mesh`, which is the solid's own or any other part of its material: pieces, notched surfaces. On its own
 // mesh values may jump at creases and the surface is displaced as the scene asks; elsewhere there is one value a vertex
 // and no displacement, and crack faces, of which the surface's displacement says nothing, show that of stresses alone.
+// Null when a value is not finite: a picture is no reason to end a run.
 std::shared_ptr<const SurfaceField> shown_field(const SceneField& wanted, Solid& solid, const StressState& state,
                                                 const Elastic& material, const SurfaceMesh& mesh);
 
