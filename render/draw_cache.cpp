@@ -8,7 +8,7 @@ DrawBuffer::DrawBuffer(const DrawMesh& mesh)
     : origin_(mesh.origin), box_(mesh.box), original_(mesh.original_indices), total_(mesh.indices.size()) {
   glGenVertexArrays(1, &array_);
   glBindVertexArray(array_);
-  glGenBuffers(2, buffers_);
+  glGenBuffers(3, buffers_);
   glBindBuffer(GL_ARRAY_BUFFER, buffers_[0]);
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(float)), mesh.vertices.data(),
                GL_STATIC_DRAW);
@@ -20,10 +20,16 @@ DrawBuffer::DrawBuffer(const DrawMesh& mesh)
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, kStride, nullptr);
   glEnableVertexAttribArray(1);
   glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, kStride, reinterpret_cast<const void*>(3 * sizeof(float)));
+  if (mesh.values.empty()) return;
+  glBindBuffer(GL_ARRAY_BUFFER, buffers_[2]);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.values.size() * sizeof(float)), mesh.values.data(),
+               GL_STATIC_DRAW);
+  glEnableVertexAttribArray(2);
+  glVertexAttribPointer(2, 1, GL_FLOAT, GL_FALSE, sizeof(float), nullptr);
 }
 
 DrawBuffer::~DrawBuffer() {
-  glDeleteBuffers(2, buffers_);
+  glDeleteBuffers(3, buffers_);
   glDeleteVertexArrays(1, &array_);
 }
 
@@ -39,13 +45,13 @@ std::vector<const DrawBuffer*> DrawCache::update(const Frame& frame) {
   std::vector<const DrawBuffer*> buffers;
   for (const FrameBody& body : frame.bodies) {
     Entry& entry = entries_[{body.id, body.mesh_version}];
-    if (entry.mesh != body.mesh) {
+    if (entry.mesh != body.mesh || entry.field != body.field) {
       if (entry.shown)
         throw InputError(fmt::format(
-            "frame {}: two bodies have id {} and mesh version {} but different meshes; give each its own id",
+            "frame {}: two bodies have id {} and mesh version {} but different meshes or fields; give each its own id",
             frame.index, body.id, body.mesh_version));
-      entry.mesh = body.mesh;
-      entry.buffer = std::make_unique<DrawBuffer>(make_draw_mesh(*body.mesh));
+      entry.mesh = body.mesh, entry.field = body.field;
+      entry.buffer = std::make_unique<DrawBuffer>(make_draw_mesh(*body.mesh, body.field.get()));
     }
     entry.shown = true;
     buffers.push_back(entry.buffer.get());

@@ -28,7 +28,7 @@ class DrawBuffer {
   Vec3 origin_;
   Box box_;
   std::size_t original_, total_;  // indices
-  GLuint array_ = 0, buffers_[2] = {0, 0};
+  GLuint array_ = 0, buffers_[3] = {0, 0, 0};
 };
 
 class DrawCache {
@@ -41,6 +41,7 @@ class DrawCache {
  private:
   struct Entry {
     std::shared_ptr<const SurfaceMesh> mesh;  // held, so that a different mesh under the same key is noticed
+    std::shared_ptr<const SurfaceField> field;
     std::unique_ptr<DrawBuffer> buffer;
     bool shown = false;
   };

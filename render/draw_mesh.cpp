@@ -55,9 +55,13 @@ CornerGroups smooth_groups(const SurfaceMesh& mesh, const std::vector<Vec3>& nor
   return groups;
 }
 
-}  // namespace
+SurfaceMesh moved(const SurfaceMesh& mesh, const Vec3Column& by) {
+  SurfaceMesh out = mesh;
+  for (std::size_t v = 0; v < out.vertex_count(); ++v) out.vertices.set(v, out.vertices[v] + by[v]);
+  return out;
+}
 
-DrawMesh make_draw_mesh(const SurfaceMesh& mesh, Real crease_degrees) {
+DrawMesh make_at_rest(const SurfaceMesh& mesh, const std::vector<float>& value, Real crease_degrees) {
   DrawMesh out;
   const std::size_t n = mesh.triangle_count();
   out.box = bounding_box(mesh);
@@ -68,6 +72,8 @@ DrawMesh make_draw_mesh(const SurfaceMesh& mesh, Real crease_degrees) {
 
   std::vector<Vec3> sum(3 * n);
   for (std::uint32_t c = 0; c < 3 * n; ++c) sum[groups.root(c)] += corner_angle(mesh, c) * normal[c / 3];
+  std::vector<float> total(value.size()), count(value.size());
+  for (std::uint32_t c = 0; c < value.size(); ++c) total[groups.root(c)] += value[c], count[groups.root(c)] += 1;
   std::vector<std::uint32_t> vertex_of(3 * n, kNone);
   out.indices.reserve(3 * n);
   for (const FaceKind kind : {FaceKind::kOriginal, FaceKind::kCrack}) {
@@ -78,12 +84,22 @@ DrawMesh make_draw_mesh(const SurfaceMesh& mesh, Real crease_degrees) {
         vertex_of[root] = static_cast<std::uint32_t>(out.vertices.size() / 6);
         const Vec3 p = mesh.corner(c / 3, static_cast<int>(c % 3)) - out.origin, m = normalized(sum[root]);
         for (const Real v : {p.x, p.y, p.z, m.x, m.y, m.z}) out.vertices.push_back(static_cast<float>(v));
+        if (!value.empty()) out.values.push_back(total[root] / count[root]);
       }
       out.indices.push_back(vertex_of[root]);
     }
     if (kind == FaceKind::kOriginal) out.original_indices = out.indices.size();
   }
   return out;
+}
+
+}  // namespace
+
+DrawMesh make_draw_mesh(const SurfaceMesh& mesh, const SurfaceField* field, Real crease_degrees) {
+  static const std::vector<float> kNoValues;
+  const std::vector<float>& value = field ? field->value : kNoValues;
+  if (!field || field->displacement.size() == 0) return make_at_rest(mesh, value, crease_degrees);
+  return make_at_rest(moved(mesh, field->displacement), value, crease_degrees);
 }
 
 }  // namespace sherd

@@ -80,11 +80,20 @@ PieceWriter::~PieceWriter() {
   }
 }
 
+void PieceWriter::write_shape(const Frame& frame, const FrameBody& body, Piece& piece) {
+  const std::string path = (folder_ / file_name(body)).string();
+  unflushed_.push_back(path);
+  piece.field = body.field;
+  if (!body.field) return write_ply(*body.mesh, path);
+  SurfaceMesh mesh = *body.mesh;
+  mesh.channels.push_back({frame.scale ? frame.scale->name : "field", 1, body.field->value});
+  write_ply(mesh, path);
+}
+
 PieceWriter::Piece PieceWriter::start_piece(const Frame& frame, const FrameBody& body) {
   const std::string name = file_name(body);
-  write_ply(*body.mesh, (folder_ / name).string());
-  unflushed_.push_back(folder_ / name);
   Piece piece;
+  write_shape(frame, body, piece);
   piece.first_frame = frame.index;
   piece.file = name;
   piece.last_rotation = {1, 0, 0, 0};
@@ -104,6 +113,7 @@ void PieceWriter::add(const Frame& frame) {
     auto found = pieces_.find(key);
     if (found == pieces_.end()) found = pieces_.emplace(key, start_piece(frame, body)).first;
     Piece& piece = found->second;
+    if (piece.field != body.field) write_shape(frame, body, piece);
     piece.last_frame = frame.index;
     const auto q = piece.last_rotation = to_quaternion(body.rotation, piece.last_rotation);
     const Vec3& t = body.translation;

@@ -5,6 +5,8 @@
 //     {"id": 3, "mesh_version": 0, "name": "vase_1", "file": "0003_v0_vase_1.ply", "parent": 0,
 //      "first_frame": 17, "last_frame": 239, "poses": [[17, tx, ty, tz, qw, qx, qy, qz], ...]}, ...]}
 //
+// A body with a field (frame.h) has it in its file as an attribute of corners, the field last shown.
+//
 // A shape is a body id with a mesh version: a body that only loses a splinter is followed by a new shape with its id.
 // "parent" is the body id it broke off, null for a body of the scene. Frames are the frames' own indices.
 #pragma once
@@ -47,11 +49,13 @@ class PieceWriter {
   struct Piece {
     std::string head;  // of the JSON object, up to the frame numbers
     std::size_t first_frame = 0, last_frame = 0;
-    std::array<Real, 4> last_rotation{};  // w x y z, for signs that do not jump
-    std::string poses;                    // JSON, comma separated
-    std::string file;                     // name in the folder
+    std::array<Real, 4> last_rotation{};        // w x y z, for signs that do not jump
+    std::string poses;                          // JSON, comma separated
+    std::string file;                           // name in the folder
+    std::shared_ptr<const SurfaceField> field;  // in the file
   };
   Piece start_piece(const Frame& frame, const FrameBody& body);
+  void write_shape(const Frame& frame, const FrameBody& body, Piece& piece);
 
   std::filesystem::path folder_;
   Real fps_;

@@ -9,6 +9,7 @@
 #include "render/camera.h"
 #include "render/draw_cache.h"
 #include "render/gl.h"
+#include "render/legend.h"
 #include "render/shaders.h"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -24,12 +25,12 @@ namespace {
 
 constexpr int kShadowTexels = 2048;
 constexpr int kGroundSectors = 64;
-constexpr int kLargestSide = 8192;               // pixels
-constexpr Real kGroundReach = 5;                 // eye distances from the target to where the ground has become sky
-constexpr Real kShadowReach = 12;                // eye distances from the target within which bodies cast shadows
-constexpr Real kOcclusionRadius = 0.1;           // of the picture's height at the target
-constexpr Real kSunTangent = 0.07;               // half-width of the sun seen from the scene: a large, soft lamp
-const Vec3 kEdgeColour{0.03, 0.035, 0.05};       // of a wireframe's lines
+constexpr int kLargestSide = 8192;              // pixels
+constexpr Real kGroundReach = 5;                // eye distances from the target to where the ground has become sky
+constexpr Real kShadowReach = 12;               // eye distances from the target within which bodies cast shadows
+constexpr Real kOcclusionRadius = 0.1;          // of the picture's height at the target
+constexpr Real kSunTangent = 0.07;              // half-width of the sun seen from the scene: a large, soft lamp
+const Vec3 kEdgeColour{0.03, 0.035, 0.05};      // of a wireframe's lines
 constexpr Real kEdge = 0.6, kFaintEdge = 0.15;  // their opacity
 
 // Texture units.
@@ -72,6 +73,8 @@ void check_body(const Frame& frame, const FrameBody& b) {
               is_finite(b.rotation.row(2)),
           "its position or rotation is not finite");
   require(is_colour(b.colour) && is_colour(b.crack_colour), "its colours must be finite and not negative");
+  require(!b.field || (frame.scale && b.field->value.size() == 3 * b.mesh->triangle_count()),
+          "its field needs a scale and three values a triangle");
   require(b.opacity >= 0 && b.opacity <= 1, "its opacity must lie between 0 and 1");
 }
 
@@ -199,6 +202,7 @@ struct Rasterizer::Impl {
 
   // One picture's state.
   const View* view = nullptr;
+  FieldScale scale;
   Camera camera;
   Sun sun;
   std::vector<Placed> bodies;
@@ -237,6 +241,7 @@ struct Rasterizer::Impl {
 
 void Rasterizer::Impl::prepare(const Frame& frame, const View& v) {
   view = &v;
+  scale = frame.scale.value_or(FieldScale{});
   camera = make_camera(v);
   const std::vector<const DrawBuffer*> buffers = cache.update(frame);
   bodies.clear();
@@ -264,12 +269,16 @@ void Rasterizer::Impl::prepare_targets() {
 void Rasterizer::Impl::draw_body(const gl::Program& program, const Placed& body, bool original, bool crack) const {
   program.set("u_rotation", body.body->rotation);
   program.set("u_translation", body.translation);
+  const SurfaceField* field = body.body->field.get();
+  program.set("u_range", scale.low, scale.high);
   if (original) {
     program.set("u_colour", to_vec(body.body->colour));
+    program.set("u_field", field != nullptr);
     body.buffer->draw_original();
   }
   if (crack) {
     program.set("u_colour", to_vec(body.body->crack_colour));
+    program.set("u_field", field && field->on_cracks);
     program.set("u_opacity", 1.0);
     body.buffer->draw_crack();
   }
@@ -480,7 +489,9 @@ Image Rasterizer::render(const Frame& frame, const View& view) {
   r.pass_surface();
   r.pass_translucent();
   if (view.wireframe) r.pass_edges();
-  return r.pass_finish();
+  Image image = r.pass_finish();
+  if (frame.scale) draw_legend(*frame.scale, image);
+  return image;
 }
 
 }  // namespace sherd

@@ -3,8 +3,9 @@
 // Light: a warm sun with soft shadows, a hemisphere of sky light darkened by screen-space ambient occlusion, a little
 // gloss. Bodies are smooth within 35 degrees of dihedral angle; crack faces meet the original surface in a crease. The
 // ground fades into the sky with distance. A body with opacity < 1 shows its crack faces through its original surface.
-// A wireframe view has the edges of all triangles as thin dark lines where they are not hidden; of a body with opacity < 1
-// those of its original surface are fainter.
+// A wireframe view has the edges of all triangles as thin dark lines where they are not hidden; of a body with opacity
+// < 1 those of its original surface are fainter. A body with a field has its colours instead, with a colour bar at the
+// left.
 #pragma once
 #include <memory>
 

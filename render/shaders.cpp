@@ -1,5 +1,7 @@
 #include "render/shaders.h"
 
+#include "render/colour_map.h"
+
 namespace sherd::shaders {
 namespace {
 
@@ -73,12 +75,16 @@ std::string body_vertex() {
   return std::string(kVersion) + R"(
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
+layout(location = 2) in float a_value;
 uniform mat4 u_view_projection;
 uniform mat3 u_rotation;
 uniform vec3 u_translation;
+uniform vec2 u_range;
 out vec3 v_position;
 out vec3 v_normal;
+out float v_value;
 void main() {
+  v_value = (a_value - u_range.x) / (u_range.y - u_range.x);
   v_position = u_rotation * a_position + u_translation;
   v_normal = u_rotation * a_normal;
   gl_Position = u_view_projection * vec4(v_position, 1.0);
@@ -94,7 +100,9 @@ uniform float u_ground_radius;
 uniform int u_ground_sectors;
 out vec3 v_position;
 out vec3 v_normal;
+out float v_value;
 void main() {
+  v_value = 0.0;
   int corner = gl_VertexID % 3;
   float angle = -6.2831853 * float(gl_VertexID / 3 + corner - 1) / float(u_ground_sectors);
   vec2 p = corner == 0 ? vec2(0.0) : u_ground_radius * vec2(cos(angle), sin(angle));
@@ -194,9 +202,11 @@ void main() {
 }
 
 std::string surface_fragment() {
-  return std::string(kVersion) + kSky + kShadow + R"(
+  return std::string(kVersion) + kSky + kShadow + colour_map_glsl() + R"(
 in vec3 v_position;
 in vec3 v_normal;
+in float v_value;
+uniform int u_field;
 uniform vec3 u_eye;
 uniform mat3 u_view_axes;
 uniform vec3 u_sun;
@@ -227,6 +237,7 @@ float ambient_light(float distance) {
 
 void main() {
   vec3 n = normalize(gl_FrontFacing ? v_normal : -v_normal), v = normalize(u_eye - v_position);
+  vec3 base = u_field != 0 ? map_colour(v_value) : u_colour;
   float cosine = max(dot(n, u_sun), 0.0);
   // The map holds flat triangles: the flat normal, not the smooth one, says where they are.
   vec3 flat_normal = normalize(cross(dFdx(v_position), dFdy(v_position)));
@@ -242,7 +253,7 @@ void main() {
   vec3 fill_from = normalize(vec3(-u_sun.x, 0.35, -u_sun.z) + 0.8 * v);
   float fill = 0.10 * max(dot(n, fill_from), 0.0);
   // Light that bounces between bright surfaces keeps creases from going grey (Jimenez et al. 2016).
-  vec3 a = 2.04 * u_colour - 0.33, b = -4.80 * u_colour + 0.64, c = 2.76 * u_colour + 0.69;
+  vec3 a = 2.04 * base - 0.33, b = -4.80 * base + 0.64, c = 2.76 * base + 0.69;
   vec3 opened = max(vec3(open), ((open * a + b) * open + c) * open);
   vec3 light = kKey * sun + opened * (hemisphere + fill);
 
@@ -251,7 +262,8 @@ void main() {
   float facing = clamp(dot(n, v), 0.0, 1.0), fresnel = 0.04 + 0.96 * pow(1.0 - clamp(dot(h, v), 0.0, 1.0), 5.0);
   float rim = pow(1.0 - facing, 4.0);
   vec3 gloss = u_gloss * (kKey * (sun * fresnel * 9.0 * pow(max(dot(n, h), 0.0), 48.0)) + 0.12 * rim * open * above);
-  vec3 colour = u_colour * light + gloss;
+  if (u_field != 0) gloss *= 0.25;  // a highlight would read as another value
+  vec3 colour = base * light + gloss;
 
   float alpha = 1.0;
   if (u_opacity < 1.0) {  // glass-like: dark, dense outlines, clear faces

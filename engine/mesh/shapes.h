@@ -32,5 +32,17 @@ SurfaceMesh make_dinner_plate(Real radius, Real thickness, Real edge);
 // wall <= 0.1 min(bowl_radius, height / 2); bowl_radius <= height. `edge` is reduced where the wall would intersect
 // itself.
 SurfaceMesh make_goblet(Real height, Real bowl_radius, Real wall, Real edge);
+// Drinking glass standing on y = 0: a straight wall that widens from 0.75 radius to `radius` at the lip, a bottom twice
+// as thick. wall <= 0.2 min(radius, height).
+SurfaceMesh make_tumbler(Real height, Real radius, Real wall, Real edge);
+// Vase standing on y = 0: foot, a belly of outer radius `radius` in the lower half, a narrower open neck; the bottom is
+// twice as thick as the wall. wall <= 0.15 radius, radius <= height. Of both vessels `edge` is reduced where the wall
+// would intersect itself.
+SurfaceMesh make_vase(Real height, Real radius, Real wall, Real edge);
+// Solid figure on y = 0, as a chessman: plinth of radius 0.305 height, robe, collar and a round head.
+SurfaceMesh make_figurine(Real height, Real edge);
+
+// Square column on y = 0, `turn` radians twisted about y from bottom to top; |turn| <= 2 pi height / width.
+SurfaceMesh make_twisted_column(Real width, Real height, Real turn, Real edge);
 
 }  // namespace sherd

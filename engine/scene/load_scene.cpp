@@ -115,6 +115,26 @@ void read_material_view(TableReader& reader, Scene& scene) {
   if (index < names.size()) scene.output.material_view = index;
 }
 
+void read_field(TableReader& reader, SceneOutput& output) {
+  const TomlValue* given = reader.find("field");
+  SceneField field;
+  const std::size_t kind = reader.choice("field", kFieldNames, kFieldNames.size());
+  const TomlValue* range = reader.find("field_range");
+  if (const auto ends = reader.numbers("field_range", {-1e15, 1e15}, 2); range && ends) {
+    if (ends->size() != 2 || !((*ends)[0] < (*ends)[1]))
+      reader.problems().refuse(*range, reader.path("field_range"), "form: [low, high], low below high");
+    else
+      field.range = {(*ends)[0], (*ends)[1]};
+  }
+  field.deformation = reader.number("deformation", {0, 1e12}, 0);
+  for (const char* key : {"field_range", "deformation"})
+    if (const TomlValue* value = reader.find(key); value && !given)
+      reader.problems().refuse(*value, reader.path(key), "use: together with output.field");
+  if (kind == kFieldNames.size()) return;
+  field.kind = static_cast<FieldKind>(kind);
+  output.field = field;
+}
+
 void read_output(TableReader& root, Scene& scene) {
   section(root, "output", [&](TableReader& r) {
     SceneOutput& o = scene.output;
@@ -130,6 +150,7 @@ void read_output(TableReader& root, Scene& scene) {
       r.problems().refuse(*r.find("movie"), r.path("movie"), "values: false, since output.frames is false");
     o.pieces = r.flag("pieces", o.pieces);
     read_material_view(r, scene);
+    read_field(r, o);
   });
 }
 
@@ -164,13 +185,14 @@ std::uint64_t digest_of(const TomlValue& root, const Scene& scene) {
 
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& file) {
+Scene load_scene(const std::filesystem::path& file, std::optional<Quality> quality) {
   const TomlValue root_table = parse_toml_file(file);
   Problems problems(file.string());
   TableReader root(root_table, "", problems);
   Scene scene;
   scene.file = file;
   read_time(root, scene);
+  const auto own = static_cast<Quality>(root.choice("quality", kQualityNames, 1));
   read_bodies(root, scene);
   read_loads(root, scene);
   read_world(root, scene);
@@ -179,6 +201,7 @@ Scene load_scene(const std::filesystem::path& file) {
   root.finish();
   problems.raise();
   scene.digest = digest_of(root_table, scene);
+  apply_quality(quality.value_or(own), scene);
   return scene;
 }
 

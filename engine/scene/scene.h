@@ -1,11 +1,14 @@
 // A scene: everything a run is told, checked before anything is made. Read from TOML (scenes/README.md lists the keys).
 // SI units; world: right-handed, y up.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -14,6 +17,7 @@
 #include "engine/material/material.h"
 #include "engine/mesh/load.h"
 #include "engine/mesh/surface_mesh.h"
+#include "engine/scene/quality.h"
 #include "engine/scene/skip.h"
 
 namespace sherd {
@@ -46,8 +50,21 @@ struct GobletShape {
 struct TorusShape {
   Real radius = 0, tube_radius = 0;
 };
-using ShapeSpec = std::variant<BoxShape, SphereShape, HollowSphereShape, PlateShape, BarShape, CylinderShape,
-                               DinnerPlateShape, GobletShape, TorusShape>;
+struct TumblerShape {
+  Real height = 0, radius = 0, wall = 0;
+};
+struct VaseShape {
+  Real height = 0, radius = 0, wall = 0;
+};
+struct FigurineShape {
+  Real height = 0;
+};
+struct TwistedColumnShape {
+  Real width = 0, height = 0, turn = 0;  // m, m, rad
+};
+using ShapeSpec =
+    std::variant<BoxShape, SphereShape, HollowSphereShape, PlateShape, BarShape, CylinderShape, DinnerPlateShape,
+                 GobletShape, TorusShape, TumblerShape, VaseShape, FigurineShape, TwistedColumnShape>;
 
 // How large the mesh of a file becomes; the factor is uniform.
 enum class MeshFit {
@@ -87,6 +104,7 @@ struct SceneBody {
   std::string name;  // unique; letters, digits, '_' and '-', so that it can name files
   std::variant<MeshSpec, ShapeSpec> source;
   Real edge_length = 0;         // target edge of the surface mesh, m; 0 asks for 1/40 of the diagonal
+  Real edge_factor = 1;         // times either: the run's quality
   Real edge_per_thickness = 0;  // edges at most this many times as long as the wall is thick; 0: edge_length everywhere
   Real merge_features = 0.02;   // creases closer than this part of the edges are merged where they force slivers
   Anchor anchor = Anchor::kCentreOfMass;
@@ -173,22 +191,40 @@ struct SceneLight {
   Vec3 direction{0.5, 1.0, 0.4};  // towards the sun
 };
 
+// A quantity of the last solve of each body, shown as colours of its surface.
+enum class FieldKind {
+  kDisplacement,  // its size, m
+  kStrainEnergy,  // density, J/m^3
+  kMaxPrincipal,  // largest principal stress, Pa
+};
+// In the order of FieldKind.
+inline constexpr std::array<std::string_view, 3> kFieldNames{"displacement", "strain_energy", "max_principal"};
+inline constexpr std::array<std::string_view, 3> kFieldUnits{"m", "J/m3", "Pa"};
+
+struct SceneField {
+  FieldKind kind = FieldKind::kDisplacement;
+  std::optional<std::pair<Real, Real>> range;  // what the colours span; nothing: found from the values
+  Real deformation = 0;                        // displacements are drawn times this
+};
+
 struct SceneOutput {
   int width = 1280, height = 720;  // pixels
   int samples = 4;                 // per pixel: 1, 2, 4 or 8
   bool frames = true, movie = true, pieces = true;
   std::optional<std::size_t>
       material_view;  // body (index in Scene::bodies) also drawn in material space with its cracks
+  std::optional<SceneField> field;
 };
 
 struct Scene {
   std::filesystem::path file;  // as given to load_scene
   // Of what the file says (not of comments and layout) and of the mesh files it names: another scene has another one.
   std::uint64_t digest = 0;
-  Vec3 gravity{0, -9.81, 0};  // m/s^2
-  Real time_step = 1e-3;      // s
-  Real duration = 2;          // s
-  Real frame_rate = 60;       // frames per second of simulated time, at most one a step
+  Quality quality = Quality::kDefault;  // already applied to what follows
+  Vec3 gravity{0, -9.81, 0};            // m/s^2
+  Real time_step = 1e-3;                // s
+  Real duration = 2;                    // s
+  Real frame_rate = 60;                 // frames per second of simulated time, at most one a step
   std::vector<SceneBody> bodies;
   std::vector<SceneLoad> loads;
   SceneGround ground;
@@ -203,7 +239,8 @@ struct Scene {
 
 // Throws InputError naming every problem found, one a line and in file order, each as
 // "file:line:column: key: value X not allowed; allowed range Y". Creates nothing; mesh files are only looked for.
-Scene load_scene(const std::filesystem::path& file);
+// `quality` stands before the scene's own.
+Scene load_scene(const std::filesystem::path& file, std::optional<Quality> quality = {});
 
 // The body's mesh about its own origin, before remeshing: generated, or loaded, scaled and repaired. `messages` gets a
 // sentence for everything loading and repair changed. Throws InputError naming the file for what cannot be repaired.
@@ -214,8 +251,9 @@ MaterialFields scene_fields(const SceneBody& body, const SurfaceMesh& mesh);
 // What a crack is to follow, the mesh file loaded and scaled as the body's own. Throws InputError naming the file when
 // it is no open, consistently oriented surface.
 GuideSpec scene_guide(const SceneBody& body, const SceneCrack& crack, std::vector<std::string>& messages);
-// The body's edge_length, or the default that stands for 0, for the mesh of scene_mesh(); m.
-Real scene_edge_length(const SceneBody& body, const SurfaceMesh& mesh);
+// The edge length a body of this bounding-box diagonal (m) is meshed with, m: its edge_length, or the default that
+// stands for 0, times its edge_factor.
+Real scene_edge_length(const SceneBody& body, Real diagonal);
 
 // The closed surface of a generated solid about its own origin, with the given target edge length (m, > 0).
 SurfaceMesh make_shape(const ShapeSpec& shape, Real edge_length);

@@ -42,7 +42,7 @@ SurfaceMesh file_mesh(const MeshSpec& spec, std::vector<std::string>& messages) 
 SurfaceMesh scene_mesh(const SceneBody& body, std::vector<std::string>& messages) {
   if (const auto* file = std::get_if<MeshSpec>(&body.source)) return file_mesh(*file, messages);
   const ShapeSpec& shape = std::get<ShapeSpec>(body.source);
-  return make_shape(shape, body.edge_length > 0 ? body.edge_length : kDefaultEdge * shape_diagonal(shape));
+  return make_shape(shape, scene_edge_length(body, shape_diagonal(shape)));
 }
 
 GuideSpec scene_guide(const SceneBody& body, const SceneCrack& crack, std::vector<std::string>& messages) {
@@ -63,8 +63,8 @@ GuideSpec scene_guide(const SceneBody& body, const SceneCrack& crack, std::vecto
   return guide;
 }
 
-Real scene_edge_length(const SceneBody& body, const SurfaceMesh& mesh) {
-  return body.edge_length > 0 ? body.edge_length : kDefaultEdge * bounding_box(mesh).diagonal();
+Real scene_edge_length(const SceneBody& body, Real diagonal) {
+  return body.edge_factor * (body.edge_length > 0 ? body.edge_length : kDefaultEdge * diagonal);
 }
 
 }  // namespace sherd

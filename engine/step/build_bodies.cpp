@@ -70,7 +70,7 @@ void cut_notches(SurfaceMesh& mesh, const SceneBody& s, Real edge_length, std::v
 BuiltBody build_body(const SceneBody& s, BodyId id) {
   BuiltBody built;
   SurfaceMesh mesh = scene_mesh(s, built.messages);
-  built.edge_length = scene_edge_length(s, mesh);
+  built.edge_length = scene_edge_length(s, bounding_box(mesh).diagonal());
   const SizingOptions sizing{
       .edge_length = built.edge_length, .edge_per_thickness = s.edge_per_thickness, .merge = s.merge_features};
   if (std::holds_alternative<MeshSpec>(s.source)) {

@@ -59,7 +59,8 @@ void solve(Solid& solid, const MassProperties& mass, const Elastic& material, co
   record.relief = norm(s.load.body_force.constant) * mass.volume / record.force;
   skips.add(Skip::kZeroTerms, options.skip[Skip::kZeroTerms] &&
                                   drop_body_force(s.load, bounding_box(solid.mesh()), mass.volume, record.force));
-  skips.add(Skip::kOperators, solid.has_elastic());
+  skips.add(Skip::kOperators, options.skip[Skip::kOperators] && solid.assembled);
+  solid.assembled = true;
   const ElasticBody* elastic = nullptr;
   {
     const Stopwatch watch(seconds.assemble, "elastic body",
@@ -89,6 +90,14 @@ void solve(Solid& solid, const MassProperties& mass, const Elastic& material, co
   if (!record.solved) record.reason = "the stress is not finite";
 }
 
+// The field of the body and of what it fell into.
+void show(Solid& solid, const StressState& state, const Elastic& material, const FractureOptions& options,
+          FractureResult& result) {
+  result.field = shown_field(*options.field, solid, state, material, options.shown ? *options.shown : solid.mesh());
+  for (FragmentShape& shape : result.shapes)
+    shape.field = shown_field(*options.field, solid, state, material, *shape.shown);
+}
+
 // One solve and the cracks that follow it.
 FractureResult break_once(Solid& solid, const MassProperties& mass, const Elastic& material, const SurfaceLoad& pull,
                           const FractureOptions& options, int round) {
@@ -113,6 +122,7 @@ FractureResult break_once(Solid& solid, const MassProperties& mass, const Elasti
   if (solved.inside) event.start(field, {&*solved.inside, 1}, CrackCause::kInterior);
   event.start(field, solved.seeds);
   event.finish();
+  if (options.field) show(solid, *solved.state, material, options, result);
   for (CrackRecord& crack : result.cracks) crack.round = round;
   return result;
 }
@@ -149,11 +159,13 @@ bool break_on(FractureResult& all, const RootScale& root, Real density, const El
       continue;
     }
     FractureOptions o = options;
+    o.shown = shape.shown;
     o.max_cracks = cracks_left, o.max_pieces = options.max_pieces - pieces + 1, o.first_crack_id = all.next_crack_id;
     Solid piece(shape.clean, root, shape.edge_length);
     piece.partial = shape.partial;
     FractureResult r = break_once(piece, mass_properties(piece.mesh(), density), material, part, o, round);
     shape.was_cut = false;
+    if (r.field) shape.field = r.field;
     if (r.changed)
       std::move(r.shapes.begin(), r.shapes.end(), std::back_inserter(all.shapes)), cracked = true;
     else

@@ -8,6 +8,7 @@
 #include "engine/material/scalar_field.h"
 #include "engine/mesh/refit.h"
 #include "engine/step/crack_record.h"
+#include "engine/step/shown_field.h"
 #include "engine/step/skip_counts.h"
 #include "engine/step/solid.h"
 
@@ -35,15 +36,18 @@ struct FractureOptions {
   std::int32_t first_crack_id = 0;
   int generation = 0;  // of the body, for the records
   SceneSkip skip;
-  bool only_solve = false;  // start no crack: what solving would cost for a body that may not break
+  bool only_solve = false;                   // start no crack: what solving would cost for a body that may not break
+  std::optional<SceneField> field;           // to be made of the solve
+  std::shared_ptr<const SurfaceMesh> shown;  // what is shown of the body before the event, for the field
 };
 
 struct FragmentShape {
   std::shared_ptr<const SurfaceMesh> clean;  // for stress
   std::shared_ptr<const SurfaceMesh> shown;  // with the notches of the partial cracks; same as clean without any
   std::vector<StoppedCrack> partial;
-  Real edge_length = 0;  // of the clean mesh, m
-  bool was_cut = false;  // in the last round: another piece than before
+  Real edge_length = 0;                       // of the clean mesh, m
+  bool was_cut = false;                       // in the last round: another piece than before
+  std::shared_ptr<const SurfaceField> field;  // of `shown`, if wanted
 };
 
 // One solve of the stress.
@@ -64,9 +68,10 @@ struct SolveRecord {
 };
 
 struct FractureResult {
-  std::vector<SolveRecord> solves;    // of the body, then of its pieces; none for guided cracks
-  bool changed = false;               // shapes differ from the body as it was
-  std::vector<FragmentShape> shapes;  // one: the body with a notch or hole; more: its fragments
+  std::vector<SolveRecord> solves;            // of the body, then of its pieces; none for guided cracks
+  bool changed = false;                       // shapes differ from the body as it was
+  std::vector<FragmentShape> shapes;          // one: the body with a notch or hole; more: its fragments
+  std::shared_ptr<const SurfaceField> field;  // of the body as it was shown, if wanted
   std::vector<CrackRecord> cracks;
   // m^3. before - removed - dust + remeshing = after, to rounding; `after` is of the shapes' clean meshes.
   Real volume_before = 0, removed_volume = 0, dust_volume = 0, remeshing_volume = 0, volume_after = 0;

@@ -26,12 +26,13 @@ struct Companion {
 
   std::shared_ptr<Solid> solid;
   std::size_t scene_body = 0;
-  std::vector<HeldLoad> loads = {};     // none once it has broken
-  std::vector<bool> solved_loads = {};  // which of them acted in the last solve of this mesh
-  std::size_t mesh = kUnrecorded;       // index into RunRecord::meshes
-  std::size_t last_solve = 0;           // step, for dropping operators
-  int failed_solves = 0;                // on this mesh
-  Real last_tension = 0;                // of the last solve of this mesh, Pa
+  std::vector<HeldLoad> loads = {};                // none once it has broken
+  std::vector<bool> solved_loads = {};             // which of them acted in the last solve of this mesh
+  std::size_t mesh = kUnrecorded;                  // index into RunRecord::meshes
+  std::size_t last_solve = 0;                      // step, for dropping operators
+  int failed_solves = 0;                           // on this mesh
+  Real last_tension = 0;                           // of the last solve of this mesh, Pa
+  std::shared_ptr<const SurfaceField> field = {};  // of the body's mesh, from its last solve
 };
 
 struct RunState {

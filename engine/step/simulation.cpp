@@ -85,6 +85,7 @@ Frame Simulation::snapshot() {
   frame.index = impl_->frames.served++;
   impl_->world.certify_frame(frame.index);
   frame.time = impl_->world.time();
+  if (const auto& scale = impl_->world.record.field; scale && scale->low < scale->high) frame.scale = scale;
   impl_->frames.last_roots.clear();
   for (std::size_t i = 0; i < impl_->world.bodies.size(); ++i) {
     const Body& b = impl_->world.bodies[i];
@@ -98,6 +99,7 @@ Frame Simulation::snapshot() {
     f.translation = b.pose.position - f.rotation * b.mass.centre;
     f.colour = s.colour ? to_colour(*s.colour) : palette(scene_index);
     f.crack_colour = s.crack_colour ? to_colour(*s.crack_colour) : Colour{0.62f, 0.30f, 0.20f};
+    if (frame.scale) f.field = impl_->world.companions[i].field;
     frame.bodies.push_back(std::move(f));
   }
   for (const FrameBody& b : frame.bodies) {

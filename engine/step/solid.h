@@ -30,6 +30,7 @@ struct SolidState {
   std::vector<StoppedCrack> partial;  // cracks that stopped inside
   bool coarse_space = false;          // solves of this mesh need one, as an earlier solve found
   SolutionHistory history;            // of solves of this mesh, where the next ones start from
+  bool assembled = false;             // its system was, be it kept or not
 };
 
 // A crack that stopped inside is kept as a sheet beside the *clean* mesh (without its notch): the stress is solved on

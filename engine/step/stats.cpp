@@ -232,10 +232,12 @@ std::string digest_text(std::uint64_t sum) {
 
 std::string to_json(const RunRecord& r, bool complete) {
   Json j;
-  j["scene"] = r.scene;
+  j["scene"] = r.scene, j["quality"] = r.quality;
   j["scene_digest"] = digest_text(r.scene_digest);
   j["complete"] = complete;
   j["messages"] = r.messages;
+  if (r.field)
+    j["field"] = {{"name", r.field->name}, {"unit", r.field->unit}, {"low", r.field->low}, {"high", r.field->high}};
   j["totals"] = totals_json(r);
   j["skips"] = skips_json(r);
   j["seconds"] = seconds_json(r);

@@ -65,7 +65,7 @@ struct FrameRecord {
 };
 
 struct RunRecord {
-  std::string scene;               // file name
+  std::string scene, quality;      // file name; name of Scene::quality
   std::uint64_t scene_digest = 0;  // Scene::digest
   std::vector<std::string> messages;
   std::vector<MeshRecord> meshes;
@@ -75,7 +75,8 @@ struct RunRecord {
   std::vector<EventRecord> events;
   std::vector<CertificateRecord> certificates;
   std::vector<FrameRecord> frames;
-  Real start_volume = 0;  // of all bodies, m^3
+  Real start_volume = 0;            // of all bodies, m^3
+  std::optional<FieldScale> field;  // what the colours of the pictures mean; low = high: nothing was found yet
   Real prepare_seconds = 0, certify_seconds = 0;
   int threads = 0;
 

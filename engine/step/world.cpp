@@ -51,6 +51,7 @@ std::vector<HeldLoad> held_loads(const Scene& scene, std::size_t scene_body, con
 
 World::World(const Scene& s, int thread_count) : scene(s), threads(thread_count) {
   record.scene = s.file.filename().string(), record.scene_digest = s.digest;
+  record.quality = kQualityNames[static_cast<std::size_t>(s.quality)];
   record.threads = thread_count;
   record.skip = s.skip;
   const Stopwatch watch(record.prepare_seconds, "prepare");
@@ -58,6 +59,7 @@ World::World(const Scene& s, int thread_count) : scene(s), threads(thread_count)
   ground = {s.ground.enabled, s.ground.height, s.ground.restitution, s.ground.friction};
   rigid.dt = s.time_step, rigid.gravity = s.gravity;
   if (!s.skip[Skip::kSleep]) rigid.sleep_speed = 0;
+  if (s.output.field) record.field = field_scale(*s.output.field);
   pending = record.messages;
   start_box = world_box();
   prepared = kDigestStart;

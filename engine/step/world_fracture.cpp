@@ -152,6 +152,7 @@ FractureOptions World::fracture_options(std::size_t i) const {
   o.first_crack_id = next_crack;
   o.generation = bodies[i].generation;
   o.skip = scene.skip;
+  o.field = scene.output.field, o.shown = bodies[i].mesh;
   return o;
 }
 
@@ -184,7 +185,8 @@ void World::apply_shapes(std::size_t i, FractureResult& result, EventRecord& eve
                       .mesh = clean_kept ? companion.mesh : Companion::kUnrecorded,
                       .last_solve = companion.last_solve,
                       .failed_solves = clean_kept ? companion.failed_solves : 0,
-                      .last_tension = clean_kept ? companion.last_tension : 0});
+                      .last_tension = clean_kept ? companion.last_tension : 0,
+                      .field = shape.field});
   }
   inherit_motion(parent, fragments);
   const Momenta before = momenta(parent);
@@ -270,9 +272,13 @@ void World::take(std::size_t i, EventRecord&& event, StepRecord& step) {
   step.solves += result.solves.size(), step.cracks += result.cracks.size();
   for (const SolveRecord& s : result.solves) step.solver_iterations += static_cast<std::size_t>(s.krylov.iterations);
   report(event);
+  if (result.field) {
+    companions[i].field = result.field;
+    widen(*record.field, *scene.output.field, *result.field);
+  }
   if (result.changed) apply_shapes(i, result, event);
   step.fragments += event.new_bodies.size();
-  result.shapes.clear();
+  result.shapes.clear(), result.field.reset();
   record.events.push_back(std::move(event));
 }
 

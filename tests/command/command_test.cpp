@@ -41,8 +41,9 @@ TEST_F(Command, VersionAndHelpSucceed) {
 }
 
 TEST_F(Command, BadOptionsAreBadInput) {
-  for (const char* arguments : {"", "fly", "run", "run a.toml --threads 0", "run a.toml --frames x", "check",
-                                "check a.obj --max-hole -1", "check a.obj --frob"}) {
+  for (const char* arguments :
+       {"", "fly", "run", "run a.toml --threads 0", "run a.toml --frames x", "run a.toml --quality best",
+        "run a.toml --field heat", "check", "check a.obj --max-hole -1", "check a.obj --frob"}) {
     const Outcome outcome = sherd(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;
     EXPECT_FALSE(outcome.errors.empty()) << arguments;
@@ -123,6 +124,26 @@ TEST_F(Command, RunLeavesFramesPiecesAndStatistics) {
   const auto pieces = nlohmann::json::parse(read(folder_ / "results/pieces/transforms.json"));
   EXPECT_EQ(pieces.at("frames"), 3);
   EXPECT_EQ(pieces.at("pieces").size(), 2u);
+}
+
+TEST_F(Command, RunTakesAQualityAndAField) {
+  write("scene.toml", std::string(kSmallScene) +
+                          "field = \"displacement\"\nfield_range = [0, 1]\n[[load]]\nbody = \"box\"\nregion = {low = "
+                          "[-1, 0.0499, -1], high = [1, 1, 1]}\nforce = [0, -10, 0]\n");
+  const auto stats = [&](const std::string& options) {
+    const Outcome outcome = sherd("run scene.toml --no-render --out results --frames 2 " + options);
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    return nlohmann::json::parse(read(folder_ / "results/stats.json"));
+  };
+  const auto plain = stats("");
+  EXPECT_EQ(plain.at("quality"), "default");
+  EXPECT_EQ(plain.at("field").at("name"), "displacement");
+  EXPECT_EQ(plain.at("field").at("high"), 1);
+  const auto other = stats("--quality preview --field strain_energy");
+  EXPECT_EQ(other.at("quality"), "preview");
+  EXPECT_EQ(other.at("field").at("name"), "strain_energy");
+  EXPECT_NE(other.at("field").at("high"), 1) << "a range is of the scene's own field";
+  EXPECT_LT(other.at("meshes").at(0).at("triangles").get<int>(), plain.at("meshes").at(0).at("triangles").get<int>());
 }
 
 TEST_F(Command, AShorterRunLeavesNoPicturesOfALongerOne) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "engine/mesh/load.h"
 #include "kernels/core/error.h"
 #include "kernels/core/random.h"
 #include "render/movie.h"
@@ -183,6 +184,34 @@ TEST(Pieces, ANewShapeIsANewPieceWithItsParent) {
   EXPECT_EQ(pieces[2]["last_frame"], 1);
   EXPECT_EQ(pieces[3]["first_frame"], 2);
   EXPECT_EQ(pieces[3]["mesh_version"], 1);
+}
+
+TEST(Pieces, TheFileOfABodyHasTheFieldLastShown) {
+  const TemporaryFolder folder;
+  PieceWriter writer(folder.path(), 30);
+  Frame frame;
+  frame.scale = FieldScale{"strain_energy", "J/m3", 0, 1};
+  frame.bodies = {body_of(make_box({1, 1, 1}, 0.5), 0)};
+  const std::size_t corners = 3 * frame.bodies[0].mesh->triangle_count();
+  const auto read = [&] {
+    LoadLog log;
+    return load_mesh((folder.path() / read_transforms(folder.path())["pieces"][0]["file"].get<std::string>()).string(),
+                     {}, log);
+  };
+  writer.add(frame);
+  EXPECT_TRUE(read().channels.empty());
+  for (const float value : {2.0f, 3.0f}) {
+    auto field = std::make_shared<SurfaceField>();
+    field->value.assign(corners, value);
+    frame.bodies[0].field = field;
+    ++frame.index;
+    writer.add(frame);
+    const SurfaceMesh mesh = read();
+    ASSERT_EQ(mesh.channels.size(), 1u);
+    EXPECT_EQ(mesh.channels[0].name, "strain_energy");
+    EXPECT_EQ(mesh.channels[0].value, field->value);
+  }
+  EXPECT_EQ(read_transforms(folder.path())["pieces"].size(), 1u);
 }
 
 TEST(Pieces, AnUnwritableFolderIsAnErrorWithItsName) {

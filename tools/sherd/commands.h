@@ -1,9 +1,11 @@
 // The subcommands of `sherd`. Each returns the exit code; InputError means 2, any other exception 1.
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/scene/scene.h"
 #include "kernels/core/vec3.h"
 
 namespace sherd {
@@ -27,10 +29,12 @@ struct CheckpointEvery {
 
 struct RunOptions {
   std::filesystem::path scene;
-  std::filesystem::path out;    // empty: out/NAME for scene NAME.toml
-  std::filesystem::path trace;  // what ran when, Chrome's trace format; empty: none
-  int threads = 0;              // 0: all processors
-  int frames = 0;               // stop after so many; 0: the scene's duration
+  std::filesystem::path out;       // empty: out/NAME for scene NAME.toml
+  std::optional<Quality> quality;  // nothing: the scene's
+  std::optional<FieldKind> field;  // shown instead of the scene's
+  std::filesystem::path trace;     // what ran when, Chrome's trace format; empty: none
+  int threads = 0;                 // 0: all processors
+  int frames = 0;                  // stop after so many; 0: the scene's duration
   bool render = true;
   bool wireframe = false;            // edges of the triangles over the bodies, in every picture
   std::vector<std::string> no_skip;  // keys of [skip] to turn off; "all": every one

@@ -28,6 +28,8 @@ std::string options_identity(const RunOptions& options) {
   std::string text;
   if (!options.render) text += "--no-render ";
   if (options.wireframe) text += "--wireframe ";
+  if (options.quality) text += fmt::format("--quality {} ", kQualityNames[static_cast<std::size_t>(*options.quality)]);
+  if (options.field) text += fmt::format("--field {} ", kFieldNames[static_cast<std::size_t>(*options.field)]);
   if (!options.no_skip.empty()) text += fmt::format("--no-skip {} ", fmt::join(options.no_skip, ","));
   if (!text.empty()) text.pop_back();
   return text;

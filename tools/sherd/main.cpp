@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <map>
 
 #include "engine/scene/skip.h"
 #include "kernels/core/error.h"
@@ -13,6 +14,7 @@ constexpr const char* kExamples = R"(Examples:
   sherd run scenes/bunny.toml --out out/bunny
   sherd run scenes/plate_and_goblet.toml --threads 1 --frames 30
   sherd run scenes/bunny.toml --checkpoint-every 50   (again, after a stop, with --resume)
+  sherd run scenes/dinner_table.toml --quality preview
   sherd check bunny.obj
   sherd check --json --max-hole 0.02 scan.ply
   sherd stress bar.ply --traction t.csv --young 7e10 --poisson 0.2 --points p.csv --out stress.csv --json stats.json
@@ -29,10 +31,22 @@ struct Choice {
   std::string checkpoint_every;
 };
 
+// Words of a list in the order of an enumeration.
+template <class E, std::size_t N>
+std::map<std::string, E> by_name(const std::array<std::string_view, N>& names) {
+  std::map<std::string, E> map;
+  for (std::size_t i = 0; i < N; ++i) map[std::string(names[i])] = static_cast<E>(i);
+  return map;
+}
+
 void add_run(CLI::App& app, Choice& choice) {
   CLI::App* run = app.add_subcommand("run", "Simulate a scene and write frames, movie, pieces and statistics");
   run->add_option("SCENE", choice.run.scene, "Scene file (TOML)")->required();
   run->add_option("--out", choice.run.out, "Folder for the results (default: out/NAME for NAME.toml)");
+  run->add_option("--quality", choice.run.quality, "preview, default or fine (default: what the scene says)")
+      ->transform(CLI::CheckedTransformer(by_name<Quality>(kQualityNames)));
+  run->add_option("--field", choice.run.field, "Colour bodies by displacement, strain_energy or max_principal")
+      ->transform(CLI::CheckedTransformer(by_name<FieldKind>(kFieldNames)));
   run->add_option("--threads", choice.run.threads, "Threads (default: all processors); results do not depend on it")
       ->check(CLI::Range(1, 1024));
   run->add_option("--frames", choice.run.frames, "Stop after so many frames")->check(CLI::Range(1, 1000000));

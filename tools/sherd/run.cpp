@@ -142,8 +142,18 @@ class TraceFile {
   std::optional<Trace> trace_;
 };
 
+// A range is of the scene's own field.
+void show_field(SceneOutput& output, FieldKind kind) {
+  if (output.field && output.field->kind == kind) return;
+  SceneField field = output.field.value_or(SceneField{});
+  field.kind = kind;
+  field.range.reset();
+  output.field = field;
+}
+
 Scene scene_of(const RunOptions& options) {
-  Scene scene = load_scene(options.scene);
+  Scene scene = load_scene(options.scene, options.quality);
+  if (options.field) show_field(scene.output, *options.field);
   for (const SkipSwitch& s : kSkipSwitches)
     for (const std::string& key : options.no_skip)
       if (key == "all" || key == s.key) scene.skip.set(s.skip, false);
