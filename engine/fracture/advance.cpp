@@ -14,6 +14,7 @@ constexpr Real kBehind = 0.05;       // of h
 constexpr Real kGiveWay = 0.5;       // of h: nearer to a stronger crack in its own plane a crack stops
 constexpr int kPushes = 4;
 constexpr int kMaxRefusals = 3;
+constexpr std::uint32_t kMaxMoves = 30;  // of a node that never gets a row ahead: it goes to and fro
 
 struct Target {
   Vec3 point;
@@ -144,7 +145,9 @@ int advance_front(Growth& g, const std::vector<std::vector<Advance>>& velocity) 
       const Advance& a = velocity[l][i];
       const std::uint32_t p = g.loops[l][i];
       if (g.sheet.state[p] != NodeState::kActive) continue;
-      if (advance_node(g, g.loops[l], i, a))
+      if (g.sheet.moves[p] > kMaxMoves)
+        g.sheet.state[p] = NodeState::kBlocked;
+      else if (advance_node(g, g.loops[l], i, a))
         g.sheet.failures[g.loops[l][i]] = 0, ++moved;
       else if (++g.sheet.failures[p] >= kMaxRefusals)
         g.sheet.state[p] = NodeState::kBlocked;

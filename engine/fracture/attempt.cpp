@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/fracture/advance.h"
+#include "engine/fracture/close_ring.h"
 #include "engine/fracture/sheet_quality.h"
 #include "engine/fracture/thicken.h"
 
@@ -26,6 +27,7 @@ struct Retreat {
 };
 constexpr Retreat kRetreats[] = {{12, 16, 6, 1}, {24, 16, 6, 1}, {24, 16, 6, 6}, {1 << 20, 24, 9, 6}};
 constexpr int kSaveEvery = 3;  // steps
+constexpr std::size_t kMaxRings = 3;
 
 bool any_node(const Growth& g, NodeState s) {
   for (const FrontLoop& loop : g.loops)
@@ -44,14 +46,20 @@ bool is_driven(const Growth& g) {
 
 // A front whose greater part runs along another layer of its own sheet missed it and would spiral on: the arms of a
 // crack behind a cavity can pass each other so. Ending the attempt at once saves asking for stress.
-bool spirals(Growth& g) {
+struct Layering {
+  int active = 0, layered = 0;  // nodes; the latter have a layer of the sheet near them
+  bool spirals() const {
+    constexpr int kLeast = 6;
+    return layered >= kLeast && 2 * layered > active;
+  }
+};
+Layering layering(Growth& g) {
   constexpr Real kReach = 1.5;  // of h
-  constexpr int kLeast = 6;
-  int active = 0, layered = 0;
+  Layering n;
   for (const FrontLoop& loop : g.loops)
     for (const std::uint32_t v : loop)
-      if (g.sheet.state[v] == NodeState::kActive) ++active, layered += g.sheet.has_layer(v, kReach * g.h);
-  return layered >= kLeast && 2 * layered > active;
+      if (g.sheet.state[v] == NodeState::kActive) ++n.active, n.layered += g.sheet.has_layer(v, kReach * g.h);
+  return n;
 }
 
 Real edge_of(const GrowthOptions& o, int level) {
@@ -98,37 +106,61 @@ Attempt::Attempt(const TriangleBvh& body, const CrackField& field, const GrowthO
 bool Attempt::step() {
   Growth& g = growth_;
   if (ended_ || spiral_ || steps_ >= limit_) return false;
-  if (level_ == 0 && steps_ % kSaveEvery == 0) history_.push_back({steps_, extract()});
+  if (level_ == 0 && steps_ % kSaveEvery == 0) history_.push_back({steps_, wings_.size(), extract()});
   label_front(g);
   if (is_driven(g))
     stopped_.reset();
   else if (!stopped_)
     stopped_ = std::make_shared<CrackSheet>(extract());
-  spiral_ = spirals(g);
+  const Layering n = layering(g);
+  if (!missed_ && (n.layered > 0 || any_node(g, NodeState::kBlocked))) missed_ = steps_;
+  spiral_ = n.spirals();
   if (spiral_) return false;
   if (any_node(g, NodeState::kActive)) {
     advance_front(g, front_velocity(g));
   } else if (!remesh_front(g)) {
-    ended_ = true;
-    return false;
+    if (g.relaxed || !any_node(g, NodeState::kBlocked)) {
+      ended_ = true;
+      return false;
+    }
+    relax(g);
   }
   remesh_front(g);
   ++steps_;
   return true;
 }
 
+void Attempt::go_on(const CrackSheet& sheet) {
+  growth_.restart(sheet);
+  ended_ = spiral_ = false;
+  missed_.reset();
+  stopped_.reset();
+}
+
+bool Attempt::close_ring() {
+  if (level_ > 0 || rings_ == kMaxRings) return false;
+  std::optional<Ring> ring = sherd::close_ring(growth_);
+  if (!ring) return false;
+  ++rings_;
+  std::move(ring->wings.begin(), ring->wings.end(), std::back_inserter(wings_));
+  go_on(ring->sheet);
+  return true;
+}
+
 bool Attempt::retreat() {
-  const bool missed = spiral_ || !ended_ || any_node(growth_, NodeState::kBlocked);
-  if (!(missed || growth_.steered) || history_.empty() || retreats_ == std::size(kRetreats)) return false;
-  const Retreat& r = kRetreats[retreats_++];
-  while (history_.size() > 1 && history_.back().step > steps_ - r.steps) history_.pop_back();
+  const bool missed = spiral_ || !ended_ || missed_ || any_node(growth_, NodeState::kBlocked);
+  if (!(missed || growth_.steered) || history_.empty()) return false;
+  if (close_ring()) return true;
+  if (widened_ == std::size(kRetreats)) return false;
+  const Retreat& r = kRetreats[widened_++];
+  while (history_.size() > 1 && history_.back().step > missed_.value_or(steps_) - r.steps) history_.pop_back();
   const Saved saved = history_.back();
   history_.pop_back();  // step() saves it again
-  growth_.restart(saved.sheet);
+  wings_.resize(saved.wings);
+  growth_.to_borders = true;
   growth_.steer_range = r.range, growth_.steer_full = r.full, growth_.tension = r.tension;
   steps_ = saved.step;
-  ended_ = spiral_ = false;
-  stopped_.reset();
+  go_on(saved.sheet);
   return true;
 }
 
@@ -189,16 +221,17 @@ GrowthResult Attempt::finish() {
   GrowthResult result;
   result.steps = steps_;
   result.ladder_level = level_;
-  result.retreats = static_cast<int>(retreats_);
+  result.retreats = static_cast<int>(widened_ + rings_);
   judge(result);
   if (result.outcome == GrowthOutcome::kFailed) return result;
   improve_inside(g.sheet);
   result.sheet = extract();
   if (result.outcome == GrowthOutcome::kArrested) result.sheet.stopped = stopped_;
+  result.wings = wings_;
   result.reason = test(result.sheet);
   if (!result.reason.empty()) {
     result.outcome = GrowthOutcome::kFailed;
-    result.sheet = {};
+    result.sheet = {}, result.wings.clear();
     return result;
   }
   const SheetExtent extent = extent_inside(result.sheet, g.body);

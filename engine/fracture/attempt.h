@@ -1,6 +1,8 @@
 // One rung of the ladder (O8): a growth from its start to its end, step by step, so that several cracks can take turns.
 // Internal to the fracture stage.
 #pragma once
+#include <optional>
+
 #include "engine/fracture/front.h"
 
 namespace sherd {
@@ -13,8 +15,8 @@ class Attempt {
   Growth& growth() { return growth_; }
   // Labels the front and moves it on. Returns false when growth has ended, for whatever reason.
   bool step();
-  // After a failure: takes back the last steps, to let fronts that missed each other steer from farther away. Returns
-  // false when that was tried often enough.
+  // After a failure: closes rings whose arms missed each other, else takes back the last steps before they did, to let
+  // them steer from farther away. Returns false when that was tried often enough.
   bool retreat();
   // The outcome and, when the growth did not fail, the sheet with all its tests passed.
   GrowthResult finish();
@@ -22,20 +24,25 @@ class Attempt {
  private:
   void judge(GrowthResult& result) const;
   std::vector<std::int32_t> cracks_met() const;
+  bool close_ring();
+  void go_on(const CrackSheet& sheet);
   std::string test(const CrackSheet& sheet) const;
   CrackSheet extract() const;
 
   struct Saved {
     int step;
+    std::size_t wings;  // parted by then
     CrackSheet sheet;
   };
 
   Growth growth_;
   std::vector<Saved> history_;
-  std::size_t retreats_ = 0;
+  std::size_t widened_ = 0, rings_ = 0;  // retreats of either kind
   int level_, steps_ = 0, limit_;
   bool ended_ = false;  // no active node is left
   bool spiral_ = false;
+  std::optional<int> missed_;  // step in which a front first ran along its own sheet or into it
+  std::vector<CrackSheet> wings_;
   std::shared_ptr<const CrackSheet> stopped_;
 };
 

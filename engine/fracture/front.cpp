@@ -15,11 +15,15 @@ constexpr std::size_t kSteerLoopDistance = 5;
 constexpr Real kWallRange = 2.5, kWallFull = 0.5;  // of h: older crack walls attract from here, and fully from here
 // Of h: layers of the sheet keep at least this distance. Arms that meet out of line are then held edge to edge, where
 // they can be joined, instead of one running over the other.
-constexpr Real kMinClearance = 0.2;
+constexpr Real kMinClearance = 0.2, kLeastClearance = 0.02;  // the latter where nothing else goes on
 constexpr Real kAheadFactor = 1.5;  // of h: paper 6.3 (b), smoothness: a node this far behind both neighbours follows
 
+Real slab_clearance(const GrowthOptions& o) {
+  return 1.1 * (o.thickness_field ? o.thickness_field->upper() : o.thickness);
+}
+
 Real clearance(const GrowthOptions& o, Real h) {
-  return 1.1 * std::max(o.thickness_field ? o.thickness_field->upper() : o.thickness, kMinClearance * h);
+  return std::max(slab_clearance(o), 1.1 * kMinClearance * h);
 }
 
 Vec3 along(const Growth& g, std::uint32_t a, std::uint32_t b) {
@@ -117,6 +121,13 @@ void smooth_normals(Growth& g) {
     }
 }
 
+// Does the way d lead through the body alone, but for its end?
+bool in_sight(const Growth& g, const Vec3& from, const Vec3& d) {
+  std::vector<TriangleBvh::Hit> hits;
+  g.body.all_hits(from, d, 0, std::max(0.0, 1 - 2 * g.overshoot / norm(d)), hits);
+  return hits.empty();
+}
+
 // The nearest front node that faces `a`, or nothing.
 const FrontNode* facing_node(const Growth& g, const std::vector<FrontNode>& front, const FrontNode& a) {
   const FrontNode* best = nullptr;
@@ -133,6 +144,7 @@ const FrontNode* facing_node(const Growth& g, const std::vector<FrontNode>& fron
     const Real length = std::sqrt(d2);
     if (dot(a.outward, d) <= 0.3 * length || dot(w.outward, d) >= -0.2 * length) continue;
     if (dot(g.sheet.normal[a.node], g.sheet.normal[w.node]) <= 0) continue;
+    if (is_exited(g, w.node) && !in_sight(g, at, d)) continue;
     best = &w, best2 = d2;
   }
   return best;
@@ -184,6 +196,7 @@ void Growth::restart(const CrackSheet& from) {
   sheet.load(from);
   loops = from.front.empty() ? border_loops(from) : from.front;
   clear.clear();
+  relaxed = false;
 }
 
 Vec3 outward_direction(const Growth& g, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -231,6 +244,22 @@ void label_front(Growth& g) {
     }
 }
 
+void relax(Growth& g) {
+  g.relaxed = true;
+  g.sheet.set_clearance(std::max(slab_clearance(g.options), kLeastClearance * g.h));
+  for (const FrontLoop& loop : g.loops)
+    for (const std::uint32_t v : loop) {
+      Vec3 sum;
+      for (const std::uint32_t t : g.sheet.incident[v]) {
+        const Triangle& n = g.sheet.triangles[t];
+        sum += cross(along(g, n[0], n[1]), along(g, n[0], n[2]));
+      }
+      if (norm2(sum) > 0) g.sheet.normal.set(v, normalized(sum));
+      if (g.sheet.state[v] != NodeState::kBlocked || g.sheet.met[v] != kNoCrack) continue;
+      g.sheet.state[v] = NodeState::kActive, g.sheet.failures[v] = 0;
+    }
+}
+
 std::vector<std::vector<Advance>> front_velocity(Growth& g) {
   smooth_normals(g);
   std::vector<FrontNode> front;
@@ -240,7 +269,7 @@ std::vector<std::vector<Advance>> front_velocity(Growth& g) {
     velocity[l].resize(loop.size());
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const std::uint32_t v = loop[i];
-      if (is_exited(g, v)) continue;
+      if (is_exited(g, v) && !g.to_borders) continue;
       const Vec3 o = outward_direction(g, loop[(i + loop.size() - 1) % loop.size()], v, loop[(i + 1) % loop.size()]);
       front.push_back({v, l, i, o});
       if (g.sheet.state[v] == NodeState::kActive && norm2(o) > 0) velocity[l][i] = {o, step_length(g, v)};

@@ -31,8 +31,10 @@ struct Growth {
   // Of h: fronts that face each other closer than the range bend towards each other, the more the nearer; below the
   // second distance they head straight for each other.
   Real steer_range = 9, steer_full = 1.5;
-  bool steered = false;  // some front did
-  int tension = 1;       // passes of smoothing of the crack normals along the front in each step
+  bool steered = false;     // some front did
+  bool to_borders = false;  // and they bend towards places in sight where the crack has left the body, too
+  bool relaxed = false;     // see relax()
+  int tension = 1;          // passes of smoothing of the crack normals along the front in each step
   std::vector<Rival> rivals;
   Vec3 seed_normal;
   Real reference_stress = 0;  // Pa, the stress that gives the nominal step length
@@ -71,6 +73,9 @@ bool exceeds_strength(const Growth& g, std::uint32_t v);
 void label_front(Growth& g);
 // O3: direction and length for every loop's nodes, facing fronts steered towards each other.
 std::vector<std::vector<Advance>> front_velocity(Growth& g);
+// For fronts that have come to a stand at their own sheet: layers may come as near as their slab allows, wide notches
+// close, normals are those of the sheet, and blocked nodes try again.
+void relax(Growth& g);
 // O6 and O7, up to two passes. Returns whether anything changed.
 bool remesh_front(Growth& g);
 // Border-edge bridges, ears and fills (O7). Returns whether anything changed.

@@ -8,6 +8,7 @@ namespace sherd {
 namespace {
 
 constexpr Real kEarCosine = 0.2, kEarLength = 1.5, kBridge = 1.9;  // lengths of h
+constexpr Real kWideEarCosine = -0.5, kWideEarLength = 2.2;        // where nothing else goes on
 constexpr std::size_t kBridgeLoopDistance = 3;
 constexpr std::size_t kFillSize = 7;  // nodes: at most 42 triangulations
 constexpr Real kFillDiameter = 3;     // of h
@@ -21,7 +22,9 @@ bool close_ear(Growth& g, FrontLoop& loop, std::size_t i) {
   if (n < 4) return false;
   const std::uint32_t a = loop[(i + n - 1) % n], m = loop[i], b = loop[(i + 1) % n];
   const Vec3 to_a = g.sheet.position[a] - g.sheet.position[m], to_b = g.sheet.position[b] - g.sheet.position[m];
-  if (dot(to_a, to_b) <= kEarCosine * norm(to_a) * norm(to_b) || norm(to_a - to_b) >= kEarLength * g.h) return false;
+  const Real cosine = g.relaxed ? kWideEarCosine : kEarCosine;
+  const Real longest = (g.relaxed ? kWideEarLength : kEarLength) * g.h;
+  if (dot(to_a, to_b) <= cosine * norm(to_a) * norm(to_b) || norm(to_a - to_b) >= longest) return false;
   if (dot(cross(-to_a, to_b), g.sheet.normal[m]) >= 0) return false;  // a spike of the sheet, not a notch
   if (n > 6 && is_exited(g, m) && (is_exited(g, a) || is_exited(g, b))) return false;
   if (g.sheet.has_edge(a, b) || !g.sheet.add({Triangle{m, a, b}})) return false;

@@ -11,6 +11,7 @@ constexpr Real kSplit = 1.4, kCollapse = 0.45, kCover = 0.05;  // of h
 constexpr Real kSmooth = 0.2;        // weight of the crack line smoothing within the crack plane
 constexpr Real kSmoothAcross = 0.5;  // and across it: waves of 8 h lose 15 % a step, of 40 h less than 1 %
 constexpr int kPasses = 2;
+constexpr int kMaxPushes = 4;
 
 // Replaces the border triangle at a -> b by two with a node at `at` between them; kNone when it does not fit.
 std::uint32_t split_border_edge(Growth& g, std::uint32_t a, std::uint32_t b, const Vec3& at, NodeState state) {
@@ -22,10 +23,13 @@ std::uint32_t split_border_edge(Growth& g, std::uint32_t a, std::uint32_t b, con
   return g.sheet.apply({{t}, {{a, m, c}, {m, b, c}}, kNone, {}}) ? m : kNone;
 }
 
-// Exited nodes that stayed too near the surface, because the sheet was in the way when they left, try again.
+// Exited nodes that stayed too near the surface, because the sheet was in the way when they left, try again. Not for
+// ever: where the crack plane grazes the surface each push may end as near to it as the last.
 bool push_again(Growth& g, std::uint32_t v) {
+  if (g.sheet.pushes[v] == kMaxPushes) return false;
   const Vec3 p = g.sheet.position[v], way = push_out(g, p, g.sheet.normal[v]) - p;
   if (norm(way) < 1e-2 * g.h) return false;
+  ++g.sheet.pushes[v];
   return g.sheet.move(v, p + way) || g.sheet.move(v, p + 0.5 * way);
 }
 

@@ -54,7 +54,10 @@ struct GrowthResult {
   GrowthOutcome outcome = GrowthOutcome::kFailed;
   CrackSheet sheet;
   int ladder_level = 0;  // the rung this is the result of
-  int retreats = 0;      // times its front went back to steer from farther away, under more tension
+  int retreats = 0;  // times its front went back to steer from farther away, under more tension, or a ring was closed
+  // What lies beyond a place where the crack came round a handle or cavity and met its own flank: stopped there, to be
+  // resumed in the pieces once `sheet` is cut.
+  std::vector<CrackSheet> wings;
   int steps = 0;
   std::size_t stresses_asked = 0;   // of the field, in all attempts
   std::size_t stresses_spared = 0;  // nodes of a sheet within the body not asked for, summed over the steps

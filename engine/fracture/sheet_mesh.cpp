@@ -64,8 +64,8 @@ SheetMesh::SheetMesh(Real edge_length, Real clearance)
 
 std::uint32_t SheetMesh::add_node(const Vec3& p, const Vec3& n, NodeState s) {
   position.push_back(p), normal.push_back(n), state.push_back(s);
-  met.push_back(kNoCrack), failures.push_back(0), stress_known.push_back(0), stress.push_back({}), moves.push_back(0),
-      incident.emplace_back();
+  met.push_back(kNoCrack), failures.push_back(0), pushes.push_back(0), stress_known.push_back(0), stress.push_back({}),
+      moves.push_back(0), incident.emplace_back();
   return static_cast<std::uint32_t>(state.size() - 1);
 }
 

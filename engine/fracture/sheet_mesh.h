@@ -44,6 +44,7 @@ class SheetMesh {
   // edge_length: h, m; clearance: least distance between sheet layers that face each other, m.
   SheetMesh(Real edge_length, Real clearance);
 
+  void set_clearance(Real clearance) { clearance_ = clearance; }  // for edits from now on
   std::uint32_t add_node(const Vec3& position, const Vec3& normal, NodeState state);
   // Does the edit and returns true, or changes nothing and returns false when a new or moved triangle would be
   // degenerate, turned over against its nodes' normals, or would meet the rest of the sheet.
@@ -71,6 +72,7 @@ class SheetMesh {
   std::vector<NodeState> state;
   std::vector<std::int32_t> met;           // of a blocked node: the crack that stopped it; kNoCrack: its own sheet
   std::vector<std::uint8_t> failures;      // refused advances in a row, per node
+  std::vector<std::uint8_t> pushes;        // per node: how often it was pushed farther out after it had left the body
   std::vector<std::uint8_t> stress_known;  // `stress` belongs to the node's present position
   std::vector<PrincipalStress> stress;
   std::vector<std::uint32_t> moves;  // per node: how often it moved

@@ -139,4 +139,16 @@ CutResult cut(const SurfaceMesh& body, const SurfaceMesh& slab, const CutOptions
   return cut(CutBody(body), slab, options);
 }
 
+bool does_nothing(const CutBody& body, const CutResult& c, std::int32_t crack) {
+  constexpr Real kOneSided = 0.5;  // of the larger wall's area
+  if (c.separated || c.euler > body.euler()) return false;
+  if (body.euler() == 2 * std::ssize(body.shells())) return true;
+  Real plus = 0, minus = 0;
+  for (const SurfaceMesh& f : c.fragments)
+    for (std::size_t t = 0; t < f.triangle_count(); ++t)
+      if (f.faces.kind[t] == FaceKind::kCrack && f.faces.crack[t] == crack && f.faces.side[t] != 0)
+        (f.faces.side[t] > 0 ? plus : minus) += norm(f.area_normal2(t));
+  return !(std::min(plus, minus) > kOneSided * std::max(plus, minus));
+}
+
 }  // namespace sherd

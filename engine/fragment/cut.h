@@ -36,4 +36,10 @@ struct CutResult {
 CutResult cut(const CutBody& body, const SurfaceMesh& slab, const CutOptions& options);
 CutResult cut(const SurfaceMesh& body, const SurfaceMesh& slab, const CutOptions& options);
 
+// Of the cut by a crack whose whole border lies outside the body: it came to nothing. In a body without handles
+// whatever separates nothing does; in others it is what leaves a wall on one side alone, since it lies in a face of the
+// body and planes it off. (A crack through a handle need not open it: one that passes a blind hole, too, makes that a
+// new one.) `crack`: id of the slab's faces.
+bool does_nothing(const CutBody& body, const CutResult& cut, std::int32_t crack);
+
 }  // namespace sherd

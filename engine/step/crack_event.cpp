@@ -25,10 +25,9 @@ bool touches(const CrackSheet& sheet, const TriangleBvh& body) {
   return false;
 }
 
-// A complete sheet that lies in a face of the body only planes it off.
-bool does_nothing(const CutBody& body, const CrackSheet& sheet, const CutResult& cut) {
+bool is_complete(const CrackSheet& sheet) {
   const auto waits = [](NodeState s) { return s == NodeState::kArrested || s == NodeState::kBlocked; };
-  return std::none_of(sheet.state.begin(), sheet.state.end(), waits) && !cut.separated && cut.euler <= body.euler();
+  return std::none_of(sheet.state.begin(), sheet.state.end(), waits);
 }
 
 // Runs `work`, which changes nothing before it has succeeded. False with the reason when it threw: a broken invariant,
@@ -73,8 +72,9 @@ GrowthOptions CrackEvent::growth_options(Piece& piece, const CrackRecord& record
   o.accept = [this, &piece, &accepted, id = record.id](const CrackSheet& sheet) {
     accepted = cut_piece(piece.cut_body(), sheet, id);
     if (!accepted.ok) return accepted.reason;
-    return does_nothing(piece.cut_body(), sheet, accepted) ? std::string("it is complete and separates nothing")
-                                                           : std::string();
+    return is_complete(sheet) && does_nothing(piece.cut_body(), accepted, id)
+               ? std::string("it is complete and separates nothing")
+               : std::string();
   };
   return o;
 }
@@ -133,6 +133,7 @@ void CrackEvent::break_ligament(Piece& piece, const CrackField& field, Grown& gr
   const GrowthResult& stopped = grown.result;
   net.through.ladder_level = std::max(net.through.ladder_level, stopped.ladder_level);
   net.through.steps += stopped.steps;
+  net.through.wings.insert(net.through.wings.end(), stopped.wings.begin(), stopped.wings.end());
   if (net.through.reason.empty()) net.through.reason = stopped.reason;
   for (std::size_t k = 0; k < stopped.rungs.reason.size(); ++k)
     if (net.through.rungs.reason[k].empty()) net.through.rungs.reason[k] = stopped.rungs.reason[k];
@@ -159,14 +160,18 @@ void CrackEvent::commit(std::size_t index, Grown&& grown, CrackRecord& record, s
   const bool stays = arrested && c.fragments.size() == 1;  // a notch, see finished()
   const bool committed = guarded(record.reason, [&] {
     CrackSheet sheet = g.sheet;
+    std::vector<StoppedCrack> wings;
+    for (CrackSheet& wing : g.wings) wings.push_back({std::move(wing), record.id, {record.id}});
     grown_.reserve(grown_.size() + 1);
     std::vector<StoppedCrack>& stopped = pieces_[index].partial;
+    stopped.reserve(stopped.size() + wings.size() + 1);
     if (!stays)
-      replace(index, std::move(c), left_out);
+      replace(index, std::move(c), left_out, wings);
     else if (left_out == kNoSheet)
       stopped.push_back({std::move(g.sheet), record.id, record.met});
     else
       stopped[left_out] = {std::move(g.sheet), record.id, record.met};
+    if (stays) std::move(wings.begin(), wings.end(), std::back_inserter(stopped));
     grown_.push_back(std::move(sheet));
   });
   if (!committed) {
@@ -178,7 +183,8 @@ void CrackEvent::commit(std::size_t index, Grown&& grown, CrackRecord& record, s
 }
 
 // All that can throw comes before the first change.
-void CrackEvent::replace(std::size_t index, CutResult&& c, std::size_t left_out) {
+void CrackEvent::replace(std::size_t index, CutResult&& c, std::size_t left_out,
+                         const std::vector<StoppedCrack>& wings) {
   std::vector<Piece> all;
   all.reserve(pieces_.size() + c.fragments.size());
   std::vector<Piece> parts;
@@ -188,6 +194,8 @@ void CrackEvent::replace(std::size_t index, CutResult&& c, std::size_t left_out)
     const std::vector<StoppedCrack>& sheets = pieces_[index].partial;
     for (std::size_t k = 0; k < sheets.size(); ++k)
       if (k != left_out && touches(sheets[k].sheet, part.tree())) part.partial.push_back(sheets[k]);
+    for (const StoppedCrack& wing : wings)
+      if (touches(wing.sheet, part.tree())) part.partial.push_back(wing);
     parts.push_back(std::move(part));
   }
   fault_point("event.commit");
@@ -299,10 +307,11 @@ void CrackEvent::start(const CrackField& field, std::span<const CrackSeed> seeds
       if (Grown again = start_in(pieces_[index], field, seed, second); again.result.outcome == GrowthOutcome::kComplete)
         grown = std::move(again), record = std::move(second);
     }
+    const bool has_wings = !grown.result.wings.empty();
     commit(index, std::move(grown), record, kNoSheet);
     cracks_ += record.outcome != "rejected";
     result_.cracks.push_back(std::move(record));
-    if (result_.cracks.back().fragments > 1) join(field);
+    if (result_.cracks.back().fragments > 1 || has_wings) join(field);
   }
 }
 
@@ -312,7 +321,7 @@ bool CrackEvent::split_by(std::size_t index, std::size_t k) {
   guarded(reason, [&] {
     CutResult c = cut_piece(pieces_[index].cut_body(), pieces_[index].partial[k].sheet, next_id_);
     if (!c.ok || c.fragments.size() < 2) return;
-    replace(index, std::move(c), k);
+    replace(index, std::move(c), k, {});
     split = true;
   });
   if (split) ++next_id_;

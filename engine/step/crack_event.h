@@ -63,8 +63,9 @@ class CrackEvent {
   // Cracks that ended at others go on once those have gone through.
   void join(const CrackField& field);
   CutResult cut_piece(const CutBody& body, const CrackSheet& sheet, std::int32_t crack);
-  // The cut's parts take the piece's place, with its stopped cracks but for number `left_out`.
-  void replace(std::size_t index, CutResult&& cut, std::size_t left_out);
+  // The cut's parts take the piece's place, with its stopped cracks but for number `left_out`, and with the crack's own
+  // wings, which wait for the cut.
+  void replace(std::size_t index, CutResult&& cut, std::size_t left_out, const std::vector<StoppedCrack>& wings);
   // The piece whose surface the seed lies on, or whose inside if it is an interior one.
   std::size_t piece_at(const CrackSeed& seed);
   bool may_start(const CrackSeed& seed) const;

@@ -279,5 +279,38 @@ TEST(CracksAndMotions, TheOrderOfFacesChangesNoFragment) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-6);
 }
 
+// --- handles ------------------------------------------------------------------------------------------------------
+
+// Jobs of the campaign that failed on the true field before rings could close: the crack comes round the hub's bore and
+// meets its own flank. The wing that is left is cut, too.
+TEST(CracksAndHandles, RingsThatMissTheirBeginningCloseOnTheFlank) {
+  const auto rocker = make_specimen("rocker", SHERD_SHARED "/meshes/dev");
+  if (!rocker) GTEST_SKIP() << "no file for rocker";
+  CampaignOptions o;
+  o.seed = 3;
+  for (const std::size_t job : {59, 66, 89}) {
+    const CrackReport r = run_job(*rocker, FieldKind::kNoise, job, o).report;
+    EXPECT_EQ(r.invalid, "") << job;
+    EXPECT_EQ(r.outcome, CrackOutcome::kSeparated) << job;
+    EXPECT_EQ(r.level, 0) << job;
+    EXPECT_EQ(r.wings, 1u) << job;
+    EXPECT_EQ(r.wings_through, r.wings) << job;
+  }
+}
+
+// Where a plane grazes the surface, border nodes were pushed out again and again and never got away from it.
+TEST(CracksAndHandles, PlanesThatGrazeTheSurfaceGoThrough) {
+  const auto rocker = make_specimen("rocker", SHERD_SHARED "/meshes/dev");
+  if (!rocker) GTEST_SKIP() << "no file for rocker";
+  CampaignOptions o;
+  for (const auto& [seed, job] : {std::pair{2, 24}, std::pair{5, 68}}) {
+    o.seed = static_cast<std::uint64_t>(seed);
+    const CrackReport r = run_job(*rocker, FieldKind::kConstant, static_cast<std::size_t>(job), o).report;
+    EXPECT_EQ(r.invalid, "") << seed;
+    EXPECT_EQ(r.level, 0) << seed;
+    EXPECT_LT(r.angle, 1e-6) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace sherd::campaign

@@ -314,5 +314,55 @@ TEST(Cut, TheSameInputGivesTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(a.removed_volume, b.removed_volume);
 }
 
+// A block with a bore along z through its middle, and beside it a blind hole along y past the middle plane.
+SurfaceMesh bored_block() {
+  const SurfaceMesh bore = moved(make_box({0.3, 0.3, 2}, 5), [](const Vec3& p) { return p + Vec3{0.011, 0.007, 0}; });
+  const SurfaceMesh hole = moved(make_box({0.2, 0.9, 0.2}, 5), [](const Vec3& p) {
+    return p + Vec3{0.521, -0.25, 0.003};
+  });
+  const CutResult once = cut_of(make_box({1.6, 1, 1}, 0.2), bore);
+  EXPECT_TRUE(once.ok) << once.reason;
+  CutResult twice = cut_of(once.fragments.at(0), hole);
+  EXPECT_TRUE(twice.ok) << twice.reason;
+  return std::move(twice.fragments.at(0));
+}
+
+// With its two sides marked, as thicken() does. In the plane of `shape`, which make_slab() leaves unmarked.
+SurfaceMesh sided_slab(const SlabShape& shape) {
+  SurfaceMesh slab = make_slab(shape);
+  for (std::size_t t = 0; t < slab.triangle_count(); ++t) {
+    const Real across = dot(normalized(slab.area_normal2(t)), normalized(shape.normal));
+    slab.faces.side[t] = across > 0.5 ? 1 : across < -0.5 ? -1 : 0;
+  }
+  return slab;
+}
+
+// A crack from the bore to the side opens the block's handle; with the blind hole on its way, this becomes a handle of
+// its own (the far wall ends in it), and Euler's number says that nothing happened. Two walls say the contrary. A slab
+// half in the top face takes a layer off and leaves one.
+TEST(Cut, ACrackDoesNothingWhenItLeavesOneWall) {
+  const CutBody body(bored_block());
+  ASSERT_EQ(body.defect(), "");
+  ASSERT_EQ(body.euler(), 0);
+  const auto cut_by = [&](const Vec3& centre, const Vec3& normal, Real u, Real v) {
+    SlabShape shape;
+    shape.centre = centre, shape.normal = normal, shape.half_u = u, shape.half_v = v, shape.cells = 6;
+    CutResult c = cut(body, sided_slab(shape), options_for(body.mesh()));
+    EXPECT_TRUE(c.ok) << c.reason;
+    EXPECT_FALSE(c.separated);
+    return c;
+  };
+  // y = 0.013: x from within the bore outwards; all of z.
+  const CutResult opened = cut_by({-0.513, 0.013, 0}, {0, 1, 0}, 0.45, 0.9);
+  EXPECT_EQ(opened.euler, 2);
+  EXPECT_FALSE(does_nothing(body, opened, 7));
+  const CutResult past_hole = cut_by({0.513, 0.013, 0}, {0, 1, 0}, 0.45, 0.9);
+  EXPECT_EQ(past_hole.euler, 0);
+  EXPECT_FALSE(does_nothing(body, past_hole, 7));
+  const CutResult planed = cut_by({0.003, 0.002, 0.5}, {0, 0, 1}, 1.3, 1.2);
+  EXPECT_EQ(planed.euler, 0);
+  EXPECT_TRUE(does_nothing(body, planed, 7));
+}
+
 }  // namespace
 }  // namespace sherd

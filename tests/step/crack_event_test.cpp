@@ -12,6 +12,7 @@
 #include "engine/step/refit_piece.h"
 #include "kernels/core/error.h"
 #include "kernels/core/fault.h"
+#include "tests/fracture/helicoid.h"
 
 namespace sherd {
 namespace {
@@ -151,6 +152,30 @@ TEST(CrackEvent, ACrackEndsAtAStoppedOneAndGoesOnOnceThatGoesThrough) {
     EXPECT_EQ(stopped, wide ? 0u : 1u);
     expect_valid(later), expect_balance(later);
   }
+}
+
+// The ring of a stopped crack closes and cuts the torus; its wing goes on to the ring's wall and, without stress where
+// it began, stops there.
+TEST(CrackEvent, TheWingOfARingGoesOnInThePieceItLiesIn) {
+  const auto mesh = std::make_shared<SurfaceMesh>(helicoid::torus().mesh);
+  const RootScale root{helicoid::torus().h, signed_volume(*mesh), bounding_box(*mesh).diagonal(), 0};
+  Solid solid{mesh, root};
+  FractureOptions options;
+  options.fields = {constant_field(0.5), constant_field(0.5), constant_field(kThickness)};
+  options.net_section = false, options.first_crack_id = 1;
+  solid.partial = {{helicoid::strip(), 0, {}}};
+  FractureResult result;
+  result.volume_before = root.volume;
+  CrackEvent event(solid, options, result);
+  event.resume(FunctionField(helicoid::helicoids()), false);
+  event.finish();
+  ASSERT_EQ(result.cracks.size(), 2u);
+  EXPECT_EQ(result.cracks[0].outcome, "complete") << result.cracks[0].reason;
+  EXPECT_EQ(result.cracks[0].ladder_level, 0);
+  EXPECT_EQ(result.cracks[1].outcome, "arrested") << result.cracks[1].reason;
+  ASSERT_EQ(result.shapes.size(), 2u);
+  EXPECT_EQ(result.shapes[0].partial.size() + result.shapes[1].partial.size(), 1u);
+  expect_valid(result), expect_balance(result);
 }
 
 // Throws from the n-th call on.

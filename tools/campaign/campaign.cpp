@@ -1,6 +1,7 @@
 #include "tools/campaign/campaign.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "kernels/core/parallel.h"
 #include "kernels/core/random.h"
@@ -44,7 +45,11 @@ void count(const JobResult& job, Tally& t) {
   ++t.jobs;
   t.separated += r.outcome == CrackOutcome::kSeparated, t.pierced += r.outcome == CrackOutcome::kPierced;
   t.arrested += r.outcome == CrackOutcome::kArrested, t.dropped += r.outcome == CrackOutcome::kDropped;
-  if (r.outcome != CrackOutcome::kDropped) ++t.level[r.level];
+  if (r.outcome != CrackOutcome::kDropped) {
+    ++t.level[r.level];
+    Fidelity& class_ = r.level > 0 ? t.ladder : r.retreats > 0 ? t.retreated : t.straight;
+    ++class_.cracks, class_.angles += r.angle;
+  }
   t.hangs += r.grow_s + r.cut_s > kHang;
   t.sheet_triangles += r.sheet_triangles, t.stress_points += r.stress_points;
   t.jitters += static_cast<std::size_t>(r.jitters);
@@ -53,6 +58,10 @@ void count(const JobResult& job, Tally& t) {
 }
 
 }  // namespace
+
+Real Fidelity::mean_degrees() const {
+  return cracks ? angles / static_cast<Real>(cracks) * 180 / std::numbers::pi : 0;
+}
 
 const char* to_string(FieldKind kind) {
   switch (kind) {

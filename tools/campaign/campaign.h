@@ -37,11 +37,19 @@ struct JobResult {
   CrackReport report;
 };
 
+// Cracks of one class: how many, and the sum of their mean angles to the field, rad.
+struct Fidelity {
+  std::size_t cracks = 0;
+  Real angles = 0;
+  Real mean_degrees() const;
+};
+
 // Sums over jobs of one shape, and of one field or all.
 struct Tally {
   std::string shape, field;
   std::size_t faces = 0, jobs = 0, separated = 0, pierced = 0, arrested = 0, dropped = 0, rejected = 0;
   std::size_t level[5] = {};                             // jobs that ended on each rung, dropped ones not counted
+  Fidelity straight, retreated, ladder;                  // level 0 at once, level 0 after retreats, higher levels
   std::size_t invalid = 0, body_changed = 0, hangs = 0;  // hang: longer than 10 s apart from the checks
   std::size_t sheet_triangles = 0, stress_points = 0, jitters = 0;
   Real grow_s = 0, cut_s = 0, max_s = 0;
@@ -49,6 +57,8 @@ struct Tally {
   std::uint64_t hash = 0;
 
   Real true_field_share() const { return jobs ? static_cast<Real>(level[0]) / static_cast<Real>(jobs) : 1; }
+  // The same without those whose front went back to steer from farther away.
+  Real straight_share() const { return jobs ? static_cast<Real>(straight.cracks) / static_cast<Real>(jobs) : 1; }
   Real dropped_share() const { return jobs ? static_cast<Real>(dropped) / static_cast<Real>(jobs) : 0; }
 };
 

@@ -1,5 +1,6 @@
 #include "tools/campaign/crack.h"
 
+#include <algorithm>
 #include <exception>
 
 #include "engine/fracture/check_growth.h"
@@ -10,11 +11,9 @@
 namespace sherd::campaign {
 namespace {
 
-// V2: a crack that went through separates, or cuts a handle open. One that lies in a face of the body does neither.
-bool does_nothing(const CutBody& body, const CrackSheet& sheet, const CutResult& cut) {
-  for (const NodeState state : sheet.state)
-    if (state == NodeState::kArrested || state == NodeState::kBlocked) return false;
-  return !cut.separated && cut.euler <= body.euler();
+bool is_complete(const CrackSheet& sheet) {
+  return std::none_of(sheet.state.begin(), sheet.state.end(),
+                      [](NodeState s) { return s == NodeState::kArrested || s == NodeState::kBlocked; });
 }
 
 // The test of a rung: the sheet must become a slab, and the slab must cut the body. Keeps both.
@@ -29,7 +28,7 @@ std::string slab_and_cut(const Specimen& s, const GrowthOptions& options, Real m
   crack.slab = std::move(*slab);
   crack.cut = cut(s.body, crack.slab, o);
   if (!crack.cut.ok) return "the cut is refused: " + crack.cut.reason;
-  return does_nothing(s.body, sheet, crack.cut) ? "the crack is complete and separates nothing" : "";
+  return is_complete(sheet) && does_nothing(s.body, crack.cut, 0) ? "the crack is complete and separates nothing" : "";
 }
 
 // False when the seed opens no crack or all rungs failed.
@@ -42,19 +41,21 @@ bool grow_and_cut(const Specimen& s, const FunctionField& field, const CrackSeed
   }
   r.grow_s -= r.cut_s;  // the cuts happen within the growth
   const GrowthResult& g = crack.growth;
-  r.level = g.ladder_level, r.reason = g.reason, r.rungs = g.rungs, r.area = g.area;
+  r.level = g.ladder_level, r.retreats = g.retreats, r.reason = g.reason, r.rungs = g.rungs, r.area = g.area;
   r.steps = static_cast<std::size_t>(g.steps), r.sheet_triangles = g.sheet.triangles.size();
   if (g.outcome == GrowthOutcome::kRejectedSeed) r.outcome = CrackOutcome::kRejected;
   if (g.outcome != GrowthOutcome::kComplete && g.outcome != GrowthOutcome::kArrested) {
     crack.cut = {};
     return false;
   }
+  r.wings = g.wings.size();
   r.fragments = crack.cut.fragments.size(), r.jitters = crack.cut.jitters, r.touched = crack.cut.touched;
   r.removed_volume = crack.cut.removed_volume;
   return true;
 }
 
-void judge(const Specimen& s, const GrowthOptions& options, Crack& crack) {
+void judge(const Specimen& s, const CrackField& field, const GrowthOptions& options, Real min_fragment_volume,
+           Crack& crack) {
   CrackReport& r = crack.report;
   const bool through = crack.growth.outcome == GrowthOutcome::kComplete;
   r.outcome = !through              ? CrackOutcome::kArrested
@@ -66,9 +67,9 @@ void judge(const Specimen& s, const GrowthOptions& options, Crack& crack) {
   // V2: in a body without handles whatever has its whole border outside separates.
   if (r.invalid.empty() && r.outcome == CrackOutcome::kPierced && s.simply_connected)
     r.invalid = "a complete crack does not separate a body without handles";
-  // Going through a handle cuts it open: two disks more in the surface, or more than that.
-  if (r.invalid.empty() && r.outcome == CrackOutcome::kPierced && crack.cut.euler <= s.body.euler())
-    r.invalid = "a complete crack neither separates nor opens a handle";
+  if (r.invalid.empty() && r.outcome == CrackOutcome::kPierced && does_nothing(s.body, crack.cut, 0))
+    r.invalid = "a complete crack neither separates nor leaves two walls";
+  if (r.invalid.empty()) r.invalid = grow_wings(s, field, options, min_fragment_volume, crack);
   r.balance = balance_of(s.body, crack.cut);
 }
 
@@ -108,16 +109,18 @@ Crack run_crack(const Specimen& s, const FunctionField& field, const CrackSeed& 
   const std::size_t asked = field.evaluations;
   try {
     const bool accepted = grow_and_cut(s, field, seed, options, crack);
+    r.stress_points = field.evaluations - asked;
     const CpuStopwatch watch(r.check_s);
-    if (accepted)
-      judge(s, options, crack);
-    else if (r.reason.empty())
+    if (accepted) {
+      judge(s, field, options, min_fragment_volume, crack);
+      r.angle = mean_angle(crack.growth.sheet, s.body.bvh(), field);
+    } else if (r.reason.empty()) {
       r.invalid = "refused without a reason";
+    }
   } catch (const std::exception& e) {
     r.outcome = CrackOutcome::kDropped;
     r.invalid = std::string("threw: ") + e.what();
   }
-  r.stress_points = field.evaluations - asked;
   r.body_changed = campaign::hash_of(s.mesh()) != before;
   r.hash = hash_of(crack);
   return crack;

@@ -21,7 +21,10 @@ const char* to_string(CrackOutcome outcome);
 
 struct CrackReport {
   CrackOutcome outcome = CrackOutcome::kDropped;
-  int level = 0;        // of the retry ladder
+  int level = 0;                             // of the retry ladder
+  int retreats = 0;                          // times the front went back to steer from farther away
+  std::size_t wings = 0, wings_through = 0;  // left behind where a ring closed; of them, that went on to its wall
+  Real angle = 0;       // mean over the sheet's area in the body between its normal and the field's, rad
   std::string reason;   // of a rejection, a drop or a ladder level above 0
   Rungs rungs;          // why each rung failed
   std::string invalid;  // a law that the accepted result breaks; empty: none
@@ -46,10 +49,16 @@ struct Crack {
 Crack run_crack(const Specimen& specimen, const FunctionField& field, const CrackSeed& seed, GrowthOptions options,
                 Real min_fragment_volume = 1e-5);
 
+// Lets the wings of a closed ring go on in the fragments of `crack`, which are cut by those that go through. The first
+// law that is broken, or nothing.
+std::string grow_wings(const Specimen& specimen, const CrackField& field, const GrowthOptions& options,
+                       Real min_fragment_volume, Crack& crack);
 // The laws B1-B4 and V1 of a cut.
 std::string check_cut_laws(const CutBody& body, const CutResult& cut);
 // |V(body) - V(fragments) - V(removed) - V(dust)| / V(body)
 Real balance_of(const CutBody& body, const CutResult& cut);
+// Mean angle between the sheet's triangles inside the body and the field at their centroids, by area, rad.
+Real mean_angle(const CrackSheet& sheet, const TriangleBvh& body, const CrackField& field);
 // Area of the whole sheet, m^2.
 Real sheet_area(const CrackSheet& sheet);
 

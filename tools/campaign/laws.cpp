@@ -12,6 +12,24 @@ Real sheet_area(const CrackSheet& s) {
   return sum;
 }
 
+Real mean_angle(const CrackSheet& s, const TriangleBvh& body, const CrackField& field) {
+  Vec3Column centroids;
+  std::vector<Vec3> normals;  // times twice the area
+  for (const Triangle& n : s.triangles) {
+    const Vec3 a = s.position[n[0]], b = s.position[n[1]], c = s.position[n[2]], centroid = (a + b + c) / 3.0;
+    if (!body.inside(centroid)) continue;
+    centroids.push_back(centroid), normals.push_back(cross(b - a, c - a));
+  }
+  std::vector<PrincipalStress> stress;
+  field.principal_stress(centroids, stress);
+  Real sum = 0, area = 0;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const Vec3 &n = normals[i], &e = stress[i].direction;
+    sum += norm(n) * std::atan2(norm(cross(n, e)), std::abs(dot(n, e))), area += norm(n);
+  }
+  return area > 0 ? sum / area : 0;
+}
+
 Real balance_of(const CutBody& body, const CutResult& c) {
   Real sum = c.removed_volume + c.dust_volume;
   for (const SurfaceMesh& f : c.fragments) sum += signed_volume(f);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "tools/campaign/campaign.h"
 
@@ -9,6 +10,10 @@ namespace {
 
 std::string hex(std::uint64_t v) {
   return fmt::format("{:016x}", v);
+}
+
+nlohmann::json to_json(const Fidelity& f) {
+  return {{"cracks", f.cracks}, {"mean_angle_deg", f.mean_degrees()}};
 }
 
 nlohmann::json to_json(const Tally& t) {
@@ -23,6 +28,10 @@ nlohmann::json to_json(const Tally& t) {
           {"rejected_seeds", t.rejected},
           {"levels", t.level},
           {"true_field_share", t.true_field_share()},
+          {"straight_share", t.straight_share()},
+          {"straight", to_json(t.straight)},
+          {"retreated", to_json(t.retreated)},
+          {"ladder", to_json(t.ladder)},
           {"dropped_share", t.dropped_share()},
           {"invalid", t.invalid},
           {"bodies_changed", t.body_changed},
@@ -46,6 +55,10 @@ nlohmann::json to_json(const JobResult& j) {
                      {"arrest", j.arrest},
                      {"outcome", to_string(r.outcome)},
                      {"level", r.level},
+                     {"retreats", r.retreats},
+                     {"wings", r.wings},
+                     {"wings_through", r.wings_through},
+                     {"angle_deg", r.angle * 180 / std::numbers::pi},
                      {"steps", r.steps},
                      {"sheet_triangles", r.sheet_triangles},
                      {"stress_points", r.stress_points},
@@ -69,20 +82,23 @@ nlohmann::json to_json(const JobResult& j) {
 
 std::string table_header() {
   return fmt::format(
-      "{:<12} {:<9} {:>6} {:>5} {:>5} {:>5} {:>5} {:>7} {:>16} {:>5} {:>7} {:>7} {:>4} {:>5} {:>6} {:>7} {:>7} {:>8}",
-      "shape", "field", "faces", "jobs", "sep.", "pier.", "arr.", "level 0", "levels 1-4", "drop", "drop %", "invalid",
-      "chg", "hang", "tri", "grow ms", "cut ms", "worst ms");
+      "{:<12} {:<9} {:>6} {:>5} {:>5} {:>5} {:>5} {:>7} {:>7} {:>13} {:>14} {:>5} {:>7} {:>7} {:>4} {:>5} {:>6} {:>7} "
+      "{:>7} {:>8}",
+      "shape", "field", "faces", "jobs", "sep.", "pier.", "arr.", "level 0", "at once", "levels 1-4", "degrees off",
+      "drop", "drop %", "invalid", "chg", "hang", "tri", "grow ms", "cut ms", "worst ms");
 }
 
 std::string table_row(const Tally& t) {
   const Real n = t.jobs ? static_cast<Real>(t.jobs) : 1;
   const std::string levels = fmt::format("{}/{}/{}/{}", t.level[1], t.level[2], t.level[3], t.level[4]);
+  const auto degrees = [](const Fidelity& f) { return f.cracks ? fmt::format("{:.1f}", f.mean_degrees()) : "-"; };
+  const std::string off = degrees(t.straight) + "/" + degrees(t.retreated) + "/" + degrees(t.ladder);
   return fmt::format(
-      "{:<12} {:<9} {:>6} {:>5} {:>5} {:>5} {:>5} {:>6.1f}% {:>16} {:>5} {:>6.2f}% {:>7} {:>4} {:>5} {:>6.0f} {:>7.1f} "
-      "{:>7.1f} {:>8.0f}",
-      t.shape, t.field, t.faces, t.jobs, t.separated, t.pierced, t.arrested, 100 * t.true_field_share(), levels,
-      t.dropped, 100 * t.dropped_share(), t.invalid, t.body_changed, t.hangs, static_cast<Real>(t.sheet_triangles) / n,
-      1e3 * t.grow_s / n, 1e3 * t.cut_s / n, 1e3 * t.max_s);
+      "{:<12} {:<9} {:>6} {:>5} {:>5} {:>5} {:>5} {:>6.1f}% {:>6.1f}% {:>13} {:>14} {:>5} {:>6.2f}% {:>7} {:>4} {:>5} "
+      "{:>6.0f} {:>7.1f} {:>7.1f} {:>8.0f}",
+      t.shape, t.field, t.faces, t.jobs, t.separated, t.pierced, t.arrested, 100 * t.true_field_share(),
+      100 * t.straight_share(), levels, off, t.dropped, 100 * t.dropped_share(), t.invalid, t.body_changed, t.hangs,
+      static_cast<Real>(t.sheet_triangles) / n, 1e3 * t.grow_s / n, 1e3 * t.cut_s / n, 1e3 * t.max_s);
 }
 
 nlohmann::json to_json(const ShapeResult& result) {
