@@ -116,7 +116,9 @@ Json refit_json(const RefitReport& r) {
          {"strategy", r.strategy},
          {"attempts", r.attempts},
          {"min_angle", r.min_angle},
-         {"volume_change", r.volume_change}};
+         {"volume_change", r.volume_change},
+         {"wall_passes", r.wall_passes},
+         {"thin_walls", r.thin_walls}};
   if (!r.reason.empty()) j["reason"] = r.reason;
   return j;
 }
