@@ -62,10 +62,11 @@ void ask_all(Growth& g) {
 }
 
 void ask_field(Growth& g) {
-  Vec3Column points;
+  Vec3Column points, headings;
   FrontLoop nodes;
   for (const FrontLoop& loop : g.loops)
-    for (const std::uint32_t v : loop) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const std::uint32_t v = loop[i];
       const NodeState s = g.sheet.state[v];
       if ((s != NodeState::kActive && s != NodeState::kArrested) || g.sheet.stress_known[v]) continue;
       if (!g.body.inside(g.sheet.position[v])) {
@@ -73,6 +74,8 @@ void ask_field(Growth& g) {
         continue;
       }
       nodes.push_back(v), points.push_back(g.sheet.position[v]);
+      headings.push_back(
+          outward_direction(g, loop[(i + loop.size() - 1) % loop.size()], v, loop[(i + 1) % loop.size()]));
     }
   g.stresses_asked += nodes.size();
   if (g.options.ask_everywhere) ask_all(g);
@@ -81,7 +84,7 @@ void ask_field(Growth& g) {
   g.stresses_spared += g.options.ask_everywhere ? 0 : within - nodes.size();
   if (nodes.empty()) return;
   std::vector<PrincipalStress> stress;
-  g.field.principal_stress(points, stress);
+  g.field.stress_ahead(points, headings, stress);
   for (std::size_t i = 0; i < nodes.size() && i < stress.size(); ++i) {
     g.sheet.stress[nodes[i]] = stress[i], g.sheet.stress_known[nodes[i]] = 1;
     if (exceeds_strength(g, nodes[i])) turn(g, nodes[i]);

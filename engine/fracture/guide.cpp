@@ -1,5 +1,6 @@
 #include "engine/fracture/guide.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/fracture/guide_shape.h"
@@ -52,10 +53,23 @@ Guide::Place Guide::nearest(const Vec3& x) const {
   return place;
 }
 
-PrincipalStress GuideField::at(const Vec3& x) const {
+GuideDeviation deviation(const CrackSheet& sheet, const Guide& guide) {
+  GuideDeviation d;
+  std::size_t count = 0;
+  for (std::size_t v = 0; v < sheet.position.size(); ++v) {
+    if (sheet.state[v] == NodeState::kExited) continue;
+    const Real off = distance(sheet.position[v], guide.nearest(sheet.position[v]).point);
+    d.rms += off * off, d.largest = std::max(d.largest, off), ++count;
+  }
+  if (count > 0) d.rms = std::sqrt(d.rms / static_cast<Real>(count));
+  return d;
+}
+
+PrincipalStress GuideField::at(const Vec3& x, const Vec3& heading) const {
   const Real h = guide_.edge_length();
   const Guide::Place here = guide_.nearest(x);
-  const Vec3 out = x - seed_.position, along = normalized(out - dot(out, here.normal) * here.normal);
+  const Vec3 out = norm2(heading) > 0 ? heading : x - seed_.position;
+  const Vec3 along = normalized(out - dot(out, here.normal) * here.normal);
   if (guide_.nearest(x + kBorderAhead * h * along).beyond > 0) return {0, here.normal};
   if (norm2(along) == 0) return {strength_, here.normal};
   // Tangents of the way to the guide ahead, and of the guide across it.
@@ -69,7 +83,13 @@ PrincipalStress GuideField::at(const Vec3& x) const {
 
 void GuideField::principal_stress(const Vec3Column& points, std::vector<PrincipalStress>& out) const {
   out.resize(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) out[i] = at(points[i]);
+  for (std::size_t i = 0; i < points.size(); ++i) out[i] = at(points[i], {});
+}
+
+void GuideField::stress_ahead(const Vec3Column& points, const Vec3Column& headings,
+                              std::vector<PrincipalStress>& out) const {
+  out.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) out[i] = at(points[i], headings[i]);
 }
 
 }  // namespace sherd

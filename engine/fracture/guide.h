@@ -43,17 +43,29 @@ class Guide {
   std::vector<CrackSeed> seeds_;
 };
 
+// How far a crack's nodes lie from its guide, m; those past the surface of the body, which end wherever that is, aside.
+struct GuideDeviation {
+  Real rms = 0, largest = 0;
+};
+GuideDeviation deviation(const CrackSheet& sheet, const Guide& guide);
+
+// Of edges: a crack with a node farther from its guide than this has not followed it. Bends of radius r are followed
+// within about h / r edges, kinks rounded over one.
+inline constexpr Real kOffGuide = 1;
+
 // Stress that pulls a crack from `seed` along the guide: `strength` (Pa) on it, none beyond its border. The direction
-// is asked for as by a driver who looks half a step ahead, away from the seed: the plane through the point asked and
-// the guide there, so that a front that left the guide returns to it.
+// is asked for as by a driver who looks half a step ahead, where the front is going (away from the seed when it has not
+// begun): the plane through the point asked and the guide there, so that a front that left the guide returns to it.
 class GuideField final : public CrackField {
  public:
   GuideField(const Guide& guide, const CrackSeed& seed, Real strength)
       : guide_(guide), seed_(seed), strength_(strength) {}
   void principal_stress(const Vec3Column& points, std::vector<PrincipalStress>& out) const override;
+  void stress_ahead(const Vec3Column& points, const Vec3Column& headings,
+                    std::vector<PrincipalStress>& out) const override;
 
  private:
-  PrincipalStress at(const Vec3& x) const;
+  PrincipalStress at(const Vec3& x, const Vec3& heading) const;
   const Guide& guide_;
   CrackSeed seed_;
   Real strength_;

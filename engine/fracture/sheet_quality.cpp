@@ -1,6 +1,7 @@
 #include "engine/fracture/sheet_quality.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 namespace sherd {
@@ -15,6 +16,11 @@ Real least_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
     return std::atan2(norm(cross(p - at, q - at)), dot(p - at, q - at));
   };
   return std::min({angle(a, b, c), angle(b, c, a), angle(c, a, b)});
+}
+
+// 2 r / R = 8 (s - a) (s - b) (s - c) / (a b c) with s half the perimeter.
+Real radius_ratio(Real a, Real b, Real c) {
+  return (b + c - a) * (c + a - b) * (a + b - c) / (a * b * c);
 }
 
 Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -65,12 +71,17 @@ SheetQuality sheet_quality(const CrackSheet& sheet) {
   q.triangles = sheet.triangles.size();
   if (q.triangles == 0) return q;
   q.least_angle = 60;
+  const Real share = 1 / static_cast<Real>(q.triangles);
+  Real shortest = std::numeric_limits<Real>::infinity(), longest = 0;
   for (const Triangle& t : sheet.triangles) {
-    const Real angle = kDegrees * least_angle(sheet.position[t[0]], sheet.position[t[1]], sheet.position[t[2]]);
+    const Vec3 u = sheet.position[t[0]], v = sheet.position[t[1]], w = sheet.position[t[2]];
+    const Real angle = kDegrees * least_angle(u, v, w), a = distance(v, w), b = distance(w, u), c = distance(u, v);
     q.least_angle = std::min(q.least_angle, angle);
-    q.mean_angle += angle / static_cast<Real>(q.triangles);
+    q.mean_angle += share * angle, q.mean_radius_ratio += share * radius_ratio(a, b, c);
     q.below_10 += angle < 10;
+    shortest = std::min({shortest, a, b, c}), longest = std::max({longest, a, b, c});
   }
+  q.edge_ratio = longest / shortest;
   return q;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/mesh/refit_walls.h"
 #include "engine/mesh/sizing.h"
 #include "kernels/core/error.h"
 
@@ -45,13 +46,19 @@ class Refit {
   }
 
   RefitReport run() {
+    climb();
+    if (report_.ok && options_.edge_per_thin_wall > 0) refit_walls(out_, options_, volume_, report_);
+    return report_;
+  }
+
+ private:
+  void climb() {
     bool found = false;
     bool angles_hold = false;  // an attempt failed by its volume alone: merging features more would not help
     for (const Attempt& attempt : kLadder) {
       if (attempt.for_angles && angles_hold) continue;
       // Finer edges cost every later solve more than such a change is worth.
-      if (attempt.finer < 1 && found && least_change_ <= kCloseEnough * options_.max_volume_change * volume_)
-        return report_;
+      if (attempt.finer < 1 && found && least_change_ <= kCloseEnough * options_.max_volume_change * volume_) return;
       SurfaceMesh mesh;
       const RemeshReport r = remesh(piece_, options_of(attempt), mesh);
       ++report_.attempts;
@@ -59,15 +66,13 @@ class Refit {
       const std::string wrong = judge(r, mesh, attempt.finer);
       const Real change = std::abs(r.volume_change) * volume_;
       if (wrong.empty() && (!found || change < least_change_)) adopt(attempt, r, std::move(mesh)), found = true;
-      if (found && least_change_ <= options_.max_volume_change * volume_) return report_;
+      if (found && least_change_ <= options_.max_volume_change * volume_) return;
       if (wrong.empty()) continue;
       report_.reason += fmt::format("{}{}: {}", report_.reason.empty() ? "" : "; ", attempt.name, wrong);
     }
     if (!found) refuse();
-    return report_;
   }
 
- private:
   void adopt(const Attempt& attempt, const RemeshReport& r, SurfaceMesh&& mesh) {
     report_.ok = true, report_.strategy = attempt.name;
     report_.min_angle = r.min_angle, report_.volume_change = r.volume_change;
@@ -130,6 +135,10 @@ void check(const RefitOptions& o) {
     throw InputError(fmt::format("refit: least_angle is {}; give degrees from 0 to 60", o.least_angle));
   if (!(o.max_volume_change > 0))
     throw InputError(fmt::format("refit: max_volume_change is {}; give a positive part", o.max_volume_change));
+  if (!(o.edge_per_thin_wall >= 0) || !std::isfinite(o.edge_per_thin_wall))
+    throw InputError(fmt::format("refit: edge_per_thin_wall is {}; give 0 (off) or more", o.edge_per_thin_wall));
+  if (!(o.most_refinement >= 1))
+    throw InputError(fmt::format("refit: most_refinement is {}; give 1 or more", o.most_refinement));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "engine/step/crack_event.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "engine/fracture/net_section.h"
@@ -28,6 +30,11 @@ bool touches(const CrackSheet& sheet, const TriangleBvh& body) {
 bool is_complete(const CrackSheet& sheet) {
   const auto waits = [](NodeState s) { return s == NodeState::kArrested || s == NodeState::kBlocked; };
   return std::none_of(sheet.state.begin(), sheet.state.end(), waits);
+}
+
+std::string refusal_off(const CrackSheet& sheet, const Guide& guide) {
+  const Real off = deviation(sheet, guide).largest / guide.edge_length();
+  return off > kOffGuide ? fmt::format("it leaves its guide by {:.2g} edges", off) : std::string();
 }
 
 // Runs `work`, which changes nothing before it has succeeded. False with the reason when it threw: a broken invariant,
@@ -69,7 +76,9 @@ GrowthOptions CrackEvent::growth_options(Piece& piece, const CrackRecord& record
   o.speed = options_.speed;
   o.ask_everywhere = !options_.skip[Skip::kFrontStress];
   o.obstacles = &obstacles;
-  o.accept = [this, &piece, &accepted, id = record.id](const CrackSheet& sheet) {
+  o.accept = [this, &piece, &accepted, id = record.id,
+              guide = record.cause == CrackCause::kGuide ? guide_ : nullptr](const CrackSheet& sheet) {
+    if (std::string reason = guide ? refusal_off(sheet, *guide) : std::string(); !reason.empty()) return reason;
     accepted = cut_piece(piece.cut_body(), sheet, id);
     if (!accepted.ok) return accepted.reason;
     return is_complete(sheet) && does_nothing(piece.cut_body(), accepted, id)
@@ -150,6 +159,8 @@ void CrackEvent::commit(std::size_t index, Grown&& grown, CrackRecord& record, s
     record.outcome = g.outcome == GrowthOutcome::kFailed ? "failed" : "rejected";
     return;
   }
+  record.sheet = sheet_quality(g.sheet);
+  if (guide_ && record.cause == CrackCause::kGuide) record.off_guide = deviation(g.sheet, *guide_);
   const bool arrested = g.outcome == GrowthOutcome::kArrested;
   record.outcome = arrested ? "arrested" : c.separated ? "complete" : "pierced";
   record.fragments = c.fragments.size(), record.met = g.met;
@@ -313,6 +324,13 @@ void CrackEvent::start(const CrackField& field, std::span<const CrackSeed> seeds
     result_.cracks.push_back(std::move(record));
     if (result_.cracks.back().fragments > 1 || has_wings) join(field);
   }
+}
+
+void CrackEvent::start_along(const Guide& guide, Real strength) {
+  guide_ = &guide;
+  for (const CrackSeed& seed : guide.seeds(strength))
+    start(GuideField(guide, seed, strength), {&seed, 1}, CrackCause::kGuide);
+  guide_ = nullptr;
 }
 
 bool CrackEvent::split_by(std::size_t index, std::size_t k) {

@@ -22,6 +22,8 @@ class CrackEvent {
   void resume(const CrackField& field, bool ligaments);
   // Strongest first. A seed within two edges of a crack of this event or of a stopped one starts nothing.
   void start(const CrackField& field, std::span<const CrackSeed> seeds, CrackCause cause = CrackCause::kStress);
+  // From each of the guide's seeds along it; one that leaves it by more than kOffGuide edges fails. `strength`: Pa.
+  void start_along(const Guide& guide, Real strength);
   // Remeshes, cuts the notches of stopped cracks into what is shown, and leaves the shapes in the result.
   void finish();
 
@@ -78,6 +80,7 @@ class CrackEvent {
   const FractureOptions& options_;
   FractureResult& result_;
   std::int32_t next_id_;
+  const Guide* guide_ = nullptr;  // while start_along() runs
   int tried_ = 0, cracks_ = 0;
   std::vector<Piece> pieces_;
   std::vector<CrackSheet> grown_;  // of this event, to keep new seeds apart

@@ -1,8 +1,10 @@
 // What became of one crack, for stats.json.
 #pragma once
+#include <optional>
 #include <string>
 
-#include "engine/fracture/grow.h"
+#include "engine/fracture/guide.h"
+#include "engine/fracture/sheet_quality.h"
 
 namespace sherd {
 
@@ -21,13 +23,15 @@ struct CrackRecord {
   // the body is bit-identical after the last two.
   std::string outcome, reason;
   int ladder_level = 0, steps = 0;
-  Rungs rungs;                  // why each failed
-  Real edge_length = 0;         // of the sheet, m: the mesh's, or a finer one where a wall asks for it
-  Real net_section_stress = 0;  // mean tension the rest of the section would bear, Pa; 0: not asked
-  Real area = 0;                // inside the body, m^2
-  Real length = 0;              // of its trace on the surface, m
-  Real removed_volume = 0;      // from the body, m^3; 0 for a stopped crack, which is kept as a sheet
-  Real dust_volume = 0;         // of pieces too small to keep that it cut off, m^3
+  Rungs rungs;                              // why each failed
+  Real edge_length = 0;                     // of the sheet, m: the mesh's, or a finer one where a wall asks for it
+  SheetQuality sheet;                       // of its triangles; empty when rejected or failed
+  std::optional<GuideDeviation> off_guide;  // of a guided crack that was not refused
+  Real net_section_stress = 0;              // mean tension the rest of the section would bear, Pa; 0: not asked
+  Real area = 0;                            // inside the body, m^2
+  Real length = 0;                          // of its trace on the surface, m
+  Real removed_volume = 0;                  // from the body, m^3; 0 for a stopped crack, which is kept as a sheet
+  Real dust_volume = 0;                     // of pieces too small to keep that it cut off, m^3
   // |piece before - pieces after - removed - dust| over the piece before; the exact cut keeps it at rounding.
   Real volume_error = 0;
   std::vector<std::int32_t> met;  // stopped cracks it ran into and ended at

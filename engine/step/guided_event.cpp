@@ -13,8 +13,7 @@ FractureResult crack_along(Solid& solid, const GuideSpec& spec, const FractureOp
   CrackEvent event(solid, once, result);
   try {
     const Guide guide(spec, solid.bvh(), solid.mesh(), solid.edge_length());
-    for (const CrackSeed& seed : guide.seeds(options.fields.strength->upper()))
-      event.start(GuideField(guide, seed, options.fields.strength->upper()), {&seed, 1}, CrackCause::kGuide);
+    event.start_along(guide, options.fields.strength->upper());
   } catch (const std::exception& e) {  // this crack is dropped, the run goes on
     CrackRecord& failed = result.cracks.emplace_back();
     failed.cause = CrackCause::kGuide, failed.outcome = "failed", failed.reason = e.what();

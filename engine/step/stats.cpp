@@ -47,6 +47,15 @@ const char* cause_name(CrackCause cause) {
   return "";
 }
 
+Json sheet_json(const SheetQuality& q) {
+  return {{"triangles", q.triangles},
+          {"least_angle", q.least_angle},
+          {"mean_angle", q.mean_angle},
+          {"below_10_degrees", q.below_10},
+          {"mean_radius_ratio", q.mean_radius_ratio},
+          {"edge_ratio", q.edge_ratio}};
+}
+
 Json crack_json(const CrackRecord& c) {
   Json j{{"id", c.id},
          {"cause", cause_name(c.cause)},
@@ -64,6 +73,8 @@ Json crack_json(const CrackRecord& c) {
          {"dust_volume", c.dust_volume},
          {"volume_error", c.volume_error},
          {"fragments", c.fragments}};
+  if (c.sheet.triangles > 0) j["sheet"] = sheet_json(c.sheet);
+  if (c.off_guide) j["off_guide"] = {{"rms", c.off_guide->rms}, {"largest", c.off_guide->largest}};
   if (c.net_section_stress != 0) j["net_section_stress"] = c.net_section_stress;
   if (!c.met.empty()) j["met"] = c.met;
   if (!c.reason.empty()) j["reason"] = c.reason;
@@ -108,7 +119,9 @@ Json refit_json(const RefitReport& r) {
          {"strategy", r.strategy},
          {"attempts", r.attempts},
          {"min_angle", r.min_angle},
-         {"volume_change", r.volume_change}};
+         {"volume_change", r.volume_change},
+         {"wall_passes", r.wall_passes},
+         {"thin_walls", r.thin_walls}};
   if (!r.reason.empty()) j["reason"] = r.reason;
   return j;
 }

@@ -14,6 +14,11 @@ class TimedField final : public CrackField {
     const Stopwatch watch(seconds_, "stress at fronts");
     field_.principal_stress(points, out);
   }
+  void stress_ahead(const Vec3Column& points, const Vec3Column& headings,
+                    std::vector<PrincipalStress>& out) const override {
+    const Stopwatch watch(seconds_, "stress at fronts");
+    field_.stress_ahead(points, headings, out);
+  }
 
  private:
   const CrackField& field_;

@@ -276,5 +276,22 @@ TEST(GrowCrack, InnerTrianglesAreWellShaped) {
   EXPECT_EQ(q.below_10 > 0, q.least_angle < 10);
 }
 
+TEST(SheetQuality, IsThatOfItsTriangles) {
+  CrackSheet sheet;
+  // An equilateral triangle of side 2 and, on one of its sides, a right one with the other leg 2 / sqrt(3).
+  const Real s = std::sqrt(3.0);
+  for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{2, 0, 0}, Vec3{1, s, 0}, Vec3{0, -2 / s, 0}}) sheet.position.push_back(p);
+  sheet.triangles = {{0, 1, 2}, {0, 3, 1}};
+  const SheetQuality q = sheet_quality(sheet);
+  EXPECT_EQ(q.triangles, 2u);
+  EXPECT_NEAR(q.least_angle, 30, 1e-12);
+  EXPECT_NEAR(q.mean_angle, 45, 1e-12);
+  // A right triangle has r = (a + b - c) / 2 and R = c / 2: with c = 4 / sqrt(3) the ratio is s - 1.
+  EXPECT_NEAR(q.mean_radius_ratio, 0.5 * (1 + s - 1), 1e-15);
+  EXPECT_NEAR(q.edge_ratio, 2, 1e-15);
+  EXPECT_EQ(q.below_10, 0u);
+  EXPECT_EQ(sheet_quality({}).triangles, 0u);
+}
+
 }  // namespace
 }  // namespace sherd

@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "engine/mesh/certificate.h"
 #include "engine/mesh/shapes.h"
+#include "engine/mesh/thickness_resolution.h"
 #include "kernels/core/error.h"
 #include "tests/fragment/slabs.h"
 
@@ -115,6 +119,55 @@ TEST(Refit, PiecesOfACubeKeepTheirVolumeAndGetNoSlivers) {
   EXPECT_GE(g.pieces, 8u);
   EXPECT_EQ(g.refused, 0u);
   EXPECT_LT(g.volume_error, 2e-4);
+}
+
+// Two wedges of 12 degrees: a plate cut aslant.
+std::vector<SurfaceMesh> wedges(Real h) {
+  const Real angle = 12 * std::numbers::pi / 180;
+  SlabShape s;
+  s.normal = {std::sin(angle), std::cos(angle), 0};
+  s.half_u = s.half_v = 2, s.cells = 40, s.thickness = 1e-3, s.wave = 0;
+  const CutResult c = cut_of(make_box({2, 0.4, 1}, h), make_slab(s));
+  EXPECT_TRUE(c.ok) << c.reason;
+  return c.fragments;
+}
+
+TEST(Refit, ThinEdgesOfACutGetElementsInKeepingAndLittleElseChanges) {
+  for (const SurfaceMesh& piece : wedges(0.1)) {
+    RefitOptions options;
+    options.edge_length = 0.1;
+    SurfaceMesh graded, uniform;
+    const RefitReport report = refit(piece, options, graded);
+    options.edge_per_thin_wall = 0;
+    const RefitReport without = refit(piece, options, uniform);
+    ASSERT_TRUE(report.ok && without.ok) << report.reason;
+    EXPECT_EQ(without.wall_passes, 0);
+    EXPECT_GE(report.wall_passes, 1);
+    const ResolutionReport before = resolution_report(uniform), after = resolution_report(graded);
+    EXPECT_EQ(resolution_warnings(before).size(), 1u);
+    EXPECT_TRUE(resolution_warnings(after).empty()) << after.share_above_5_percent;
+    EXPECT_EQ(after.share_above_5_percent, report.thin_walls);
+    EXPECT_TRUE(certify(graded).ok());
+    EXPECT_GE(report.min_angle, 1);
+    EXPECT_LT(std::abs(report.volume_change), 2e-4);  // RefitOptions::max_volume_change
+    EXPECT_NEAR(signed_volume(graded), (1 + report.volume_change) * signed_volume(piece), 1e-12);
+    EXPECT_LE(graded.triangle_count(), 3 * uniform.triangle_count());
+  }
+}
+
+TEST(Refit, AWedgeThatNoTrianglesWouldResolveAndACoarseBodyStayAsTheyAre) {
+  const SurfaceMesh piece = wedges(0.1)[0];
+  RefitOptions options;
+  options.edge_length = 0.1, options.most_refinement = 1;
+  SurfaceMesh bounded, plate;
+  EXPECT_EQ(refit(piece, options, bounded).wall_passes, 0);
+  // Everywhere five times as long as its wall is thick.
+  const RefitReport report = refit(make_plate(1, 1, 0.02, 0.1), {.edge_length = 0.1}, plate);
+  EXPECT_TRUE(report.ok) << report.reason;
+  EXPECT_EQ(report.wall_passes, 0);
+  EXPECT_GT(report.thin_walls, 0.9);
+  options.most_refinement = 0.5;
+  EXPECT_THROW(refit(piece, options, bounded), InputError);
 }
 
 TEST(Refit, TheSameCutGivesTheSameBits) {

@@ -4,11 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <new>
+#include <numbers>
 
 #include "engine/fracture/synthetic_fields.h"
 #include "engine/mesh/certificate.h"
 #include "engine/mesh/shapes.h"
+#include "engine/step/guided_event.h"
 #include "engine/step/refit_piece.h"
 #include "kernels/core/error.h"
 #include "kernels/core/fault.h"
@@ -330,6 +333,42 @@ TEST(CrackEvent, StrengthFieldsDecideWhereACrackStops) {
   ASSERT_EQ(bar.result.cracks.size(), 1u);
   EXPECT_EQ(bar.result.cracks[0].outcome, "arrested") << bar.result.cracks[0].reason;
   EXPECT_NEAR(bar.result.cracks[0].area, 0.6, kEdge);
+}
+
+// Up along x = 0 to the bar's middle plane, and back down at `turn` degrees from where it came.
+SurfaceMesh hairpin(Real turn) {
+  const Real a = turn * std::numbers::pi / 180;
+  SurfaceMesh guide;
+  for (const Vec3& p : {Vec3{0, -1, 0}, Vec3{0, 0, 0}, Vec3{2 * std::sin(a), -2 * std::cos(a), 0}})
+    for (const Real z : {-1.0, 1.0}) guide.vertices.push_back(p + Vec3{0, 0, z});
+  for (const std::uint32_t i : {0U, 2U}) guide.add_triangle(i, i + 2, i + 3), guide.add_triangle(i, i + 3, i + 1);
+  return guide;
+}
+
+TEST(CrackAlong, ItsRecordSaysHowFarFromItsGuideItRanAndHowWellItIsMeshed) {
+  Bar bar;
+  const Vec3 normal = normalized(Vec3{1, 0.3, 0});
+  bar.result = crack_along(bar.solid, GuidePlane{{0.2, 0, 0}, normal}, bar.options);
+  ASSERT_EQ(bar.result.cracks.size(), 1u);
+  const CrackRecord& c = bar.result.cracks[0];
+  EXPECT_EQ(c.outcome, "complete") << c.reason;
+  ASSERT_TRUE(c.off_guide);
+  EXPECT_LE(c.off_guide->rms, c.off_guide->largest);
+  EXPECT_LT(c.off_guide->largest, 1e-9 * kEdge);  // a plane is followed to rounding
+  EXPECT_GT(c.sheet.triangles, 50u);
+  EXPECT_GT(c.sheet.least_angle, 5);
+  EXPECT_GT(c.sheet.mean_radius_ratio, 0.6);
+}
+
+TEST(CrackAlong, AGuideThatNoCrackCanTurnWithFailsWithThatReasonAndNothingChanges) {
+  Bar bar;
+  bar.result = crack_along(bar.solid, hairpin(25), bar.options);
+  ASSERT_FALSE(bar.result.cracks.empty());
+  const CrackRecord& c = bar.result.cracks[0];
+  EXPECT_EQ(c.outcome, "failed");
+  EXPECT_NE(c.reason.find("leaves its guide by"), std::string::npos) << c.reason;
+  EXPECT_FALSE(c.off_guide);
+  EXPECT_EQ(c.sheet.triangles, 0u);
 }
 
 }  // namespace

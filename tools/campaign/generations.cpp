@@ -96,6 +96,7 @@ void Breaker::refit_part(Part& part, Breakage& b) const {
     b.defects.push_back("refit: " + r.reason);
     return;
   }
+  b.row.graded += r.wall_passes > 0;
   const Real volume = signed_volume(fitted);
   b.row.refit_volume_change += std::abs(volume - part.volume);
   part.mesh = std::move(fitted), part.volume = volume;
@@ -128,7 +129,8 @@ Breakage Breaker::operator()(const SurfaceMesh& piece, std::uint64_t seed) const
 
 void add(const GenerationRow& from, GenerationRow& to) {
   to.pieces += from.pieces, to.cracks += from.cracks, to.true_field += from.true_field, to.dropped += from.dropped;
-  to.unbroken += from.unbroken, to.invalid += from.invalid, to.refit_refused += from.refit_refused;
+  to.unbroken += from.unbroken, to.invalid += from.invalid, to.refit_refused += from.refit_refused,
+      to.graded += from.graded;
   to.certified += from.certified, to.below_1_degree += from.below_1_degree;
   to.below_15_degrees += from.below_15_degrees, to.triangles += from.triangles;
   to.min_angle = std::min(to.min_angle, from.min_angle), to.refit_volume_change += from.refit_volume_change;
@@ -181,8 +183,8 @@ GenerationResult run_generations(const Specimen& body, const GenerationOptions& 
 }
 
 std::string generation_header() {
-  return fmt::format("{:<12} {:>3} {:>6} {:>6} {:>7} {:>4} {:>7} {:>8} {:>7} {:>9} {:>5} {:>6} {:>7} {:>9} {:>9}",
-                     "shape", "gen", "pieces", "cracks", "level 0", "drop", "invalid", "unbroken", "refused",
+  return fmt::format("{:<12} {:>3} {:>6} {:>6} {:>7} {:>4} {:>7} {:>8} {:>7} {:>6} {:>9} {:>5} {:>6} {:>7} {:>9} {:>9}",
+                     "shape", "gen", "pieces", "cracks", "level 0", "drop", "invalid", "unbroken", "refused", "graded",
                      "certified", "< 1", "< 15", "min deg", "triangles", "volume");
 }
 
@@ -190,9 +192,9 @@ std::string to_text(const GenerationResult& result) {
   std::string text;
   for (const GenerationRow& r : result.rows)
     text += fmt::format(
-        "{:<12} {:>3} {:>6} {:>6} {:>7} {:>4} {:>7} {:>8} {:>7} {:>9} {:>5} {:>6} {:>7.2f} {:>9} {:>9.2e}\n",
+        "{:<12} {:>3} {:>6} {:>6} {:>7} {:>4} {:>7} {:>8} {:>7} {:>6} {:>9} {:>5} {:>6} {:>7.2f} {:>9} {:>9.2e}\n",
         result.shape, r.generation, r.pieces, r.cracks, r.true_field, r.dropped, r.invalid, r.unbroken, r.refit_refused,
-        r.certified, r.below_1_degree, r.below_15_degrees, r.min_angle, r.triangles, r.refit_volume_change);
+        r.graded, r.certified, r.below_1_degree, r.below_15_degrees, r.min_angle, r.triangles, r.refit_volume_change);
   return text + fmt::format(
                     "{:<12} volume sum off by {:.2e}, removed volume against thickness x area {:.2e}, dust {:.2e}; "
                     "{} of {} pieces solved without a warning; {:.1f} s\n",
@@ -211,6 +213,7 @@ nlohmann::json to_json(const GenerationResult& result) {
                     {"unbroken", r.unbroken},
                     {"invalid", r.invalid},
                     {"refit_refused", r.refit_refused},
+                    {"graded", r.graded},
                     {"certified", r.certified},
                     {"below_1_degree", r.below_1_degree},
                     {"below_15_degrees", r.below_15_degrees},

@@ -24,6 +24,7 @@ struct GenerationRow {
   std::size_t pieces = 0, cracks = 0, true_field = 0, dropped = 0, unbroken = 0;  // unbroken: pieces without a crack
   std::size_t invalid = 0;                                                        // cracks with a broken law
   std::size_t refit_refused = 0;  // pieces that kept the mesh of the cut
+  std::size_t graded = 0;         // pieces with shorter edges at thin walls
   std::size_t certified = 0, below_1_degree = 0, below_15_degrees = 0, triangles = 0;
   Real min_angle = 0;            // degrees
   Real refit_volume_change = 0;  // sum of absolute changes, of the body's volume
