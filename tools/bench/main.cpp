@@ -12,6 +12,7 @@
 #include "kernels/core/parallel.h"
 #include "tools/bench/cracks.h"
 #include "tools/bench/fmm.h"
+#include "tools/bench/fuzz.h"
 #include "tools/bench/pairs.h"
 #include "tools/bench/scenes.h"
 #include "tools/bench/solve.h"
@@ -217,6 +218,31 @@ CLI::App* add_scenes(CLI::App& app, sherd::bench::ScenesOptions& o) {
   return scenes;
 }
 
+CLI::App* add_fuzz(CLI::App& app, sherd::bench::FuzzOptions& o) {
+  CLI::App* fuzz = app.add_subcommand("fuzz", "random scenes, each in its own process: crashes, hangs, broken laws");
+  fuzz->add_option("--count", o.count)->check(CLI::Range(1, 1000000))->capture_default_str();
+  fuzz->add_option("--seed", o.seed, "of the first scene; the others follow")->capture_default_str();
+  fuzz->add_option("--duration", o.duration, "simulated seconds of a scene")->capture_default_str();
+  fuzz->add_option("--seconds", o.seconds, "a scene runs at most")->check(CLI::PositiveNumber)->capture_default_str();
+  fuzz->add_option("--threads", o.threads)->check(CLI::Range(1, 1024))->capture_default_str();
+  fuzz->add_option("--program", o.program, "the command sherd (default: beside this program)");
+  fuzz->add_option("--keep", o.keep, "folder for the scenes that failed")->check(CLI::ExistingDirectory);
+  fuzz->add_option("--json", o.json, "file for the numbers");
+  fuzz->footer("Examples:\n  sherd-bench fuzz --count 1000\n  sherd-bench fuzz --seed 17 --count 1 --keep .");
+  return fuzz;
+}
+
+// A study that InputError may end.
+template <class Run>
+int guarded(const Run& run) {
+  try {
+    return run();
+  } catch (const sherd::InputError& e) {
+    std::fprintf(stderr, "sherd-bench: %s\n", e.what());
+    return 2;
+  }
+}
+
 int run_micro(const std::string& program, std::vector<std::string> rest) {
   std::string name = program;
   std::vector<char*> arguments{name.data()};
@@ -250,6 +276,8 @@ int main(int argc, char** argv) {
   CLI::App* cracks = add_cracks(app, cracks_command);
   sherd::bench::ScenesOptions scenes_options;
   CLI::App* scenes = add_scenes(app, scenes_options);
+  sherd::bench::FuzzOptions fuzz_options;
+  CLI::App* fuzz = add_fuzz(app, fuzz_options);
   CLI11_PARSE(app, argc, argv);
   if (*cracks) {
     const sherd::ThreadLimit limit(cracks_command.threads);
@@ -259,14 +287,8 @@ int main(int argc, char** argv) {
     const sherd::ThreadLimit limit(solve_command.threads);
     return sherd::bench::run_solve(solve_command.options);
   }
-  if (*scenes) {
-    try {
-      return sherd::bench::run_scenes(scenes_options);
-    } catch (const sherd::InputError& e) {
-      std::fprintf(stderr, "sherd-bench: %s\n", e.what());
-      return 2;
-    }
-  }
+  if (*scenes) return guarded([&] { return sherd::bench::run_scenes(scenes_options); });
+  if (*fuzz) return guarded([&] { return sherd::bench::run_fuzz(fuzz_options); });
   if (*fmm) return sherd::bench::run_fmm(fmm_options);
   if (*pairs) return sherd::bench::run_pairs(pairs_options);
   return *stress ? run_stress(command) : run_micro(argv[0], micro->remaining());

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdio>
-#include <fstream>
 #include <thread>
 
-#include "kernels/core/error.h"
+#include "kernels/core/file.h"
 
 namespace sherd::bench {
 namespace {
@@ -157,11 +157,7 @@ int run_scenes(const ScenesOptions& options) {
         out["error"] = scene_errors(options, scenes, failed);
         break;
     }
-  if (!options.json.empty()) {
-    std::ofstream file(options.json);
-    file << out.dump(1) << "\n";
-    if (!file) throw InputError(fmt::format("{}: cannot be written; choose a folder that exists", options.json));
-  }
+  if (!options.json.empty()) replace_file(options.json, out.dump(1) + "\n");
   return failed ? 1 : 0;
 }
 
