@@ -98,15 +98,16 @@ class SceneWriter {
     line("position = {}", vector({size_ * random_.uniform(-0.3, 0.3), top_, size_ * random_.uniform(-0.3, 0.3)}));
     top_ += s.extent;
     line("rotation = {{axis = {}, angle = {:.4g}}}", vector(direction()), random_.uniform(0, 360));
-    if (chance(0.8)) line("velocity = {}", vector(direction() * decades(-2, 2)));
-    if (chance(0.5)) line("angular_velocity = {}", vector(direction() * decades(-1, 2)));
     const bool fixed = chance(0.1);
     if (fixed) line("fixed = true");
-    if (!fixed && chance(0.1)) line("breakable = false");
+    if (!fixed && chance(0.8)) line("velocity = {}", vector(direction() * decades(-2, 2)));
+    if (!fixed && chance(0.5)) line("angular_velocity = {}", vector(direction() * decades(-1, 2)));
+    const bool breakable = !fixed && chance(0.9);
+    if (!fixed && !breakable) line("breakable = false");
     material();
-    if (!fixed && chance(0.1))
+    if (breakable && chance(0.1))
       line("[[body.crack]]\nkind = \"plane\"\npoint = [0, 0, 0]\nnormal = {}\ntime = 0.01", vector(direction()));
-    if (!fixed && chance(0.1))
+    if (breakable && chance(0.1))
       line(
           "[[load]]\nbody = \"body{}\"\nregion = {{low = [{}, {}, {}], high = [{}, {}, {}]}}\nforce = {}\nfrom = "
           "0\nuntil = 0.01",
@@ -119,9 +120,9 @@ class SceneWriter {
     line("[body.material]\npreset = \"{}\"\ndensity = {:.4g}\nyoung = {:.4g}\npoisson = {:.3f}",
          std::array{"glass", "ceramic", "plaster"}[static_cast<std::size_t>(pick(3))], decades(2, 4), young,
          random_.uniform(0, 0.45));
-    const double strength = young * decades(-8, -2);
+    const double strength = std::max(100.0, young * decades(-6, -2));
     line("strength = {:.4g}\npropagation_strength = {:.4g}\nrestitution = {:.3f}\nfriction = {:.3f}", strength,
-         strength * decades(-2, 0), random_.uniform(0, 1), random_.uniform(0, 1.5));
+         std::max(100.0, strength * decades(-2, 0)), random_.uniform(0, 1), random_.uniform(0, 1.5));
   }
 
   Random random_;
