@@ -149,6 +149,7 @@ struct SceneSolver {
   Real tolerance = 1e-4;  // relative residual
   int max_iterations = 300;
   ThinWalls thin_walls = ThinWalls::kAuto;
+  Real edge_factor = 1;  // kAuto: times the edges from which walls count as thin; the run's quality
 };
 
 // What becomes of pieces below SceneFracture::min_fragment_volume.

@@ -12,7 +12,7 @@ constexpr Real kRunThinRatio = kCubicCollocationRule.at_5_percent;
 
 ElasticOptions elastic_options(const SceneSolver& solver) {
   ElasticOptions o;
-  o.thin_ratio = kRunThinRatio;
+  o.thin_ratio = kRunThinRatio * solver.edge_factor;
   o.krylov.tolerance = solver.tolerance;
   o.krylov.max_iterations = solver.max_iterations;
   o.testing = solver.thin_walls == ThinWalls::kOff   ? TestingRule::kCollocation

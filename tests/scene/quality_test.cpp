@@ -80,6 +80,13 @@ TEST_F(SceneQuality, WallsThatAreResolvedStayResolvedInPreview) {
   EXPECT_EQ(per_thickness("0"), 0);             // off stays off
 }
 
+TEST_F(SceneQuality, TheSameWallsAreAveragedInAllThree) {
+  for (const Quality quality : {Quality::kPreview, Quality::kDefault, Quality::kFine}) {
+    const Scene scene = load_scene(write("scene.toml", kBall), quality);
+    EXPECT_EQ(scene.solver.edge_factor, scene.bodies[0].edge_factor);
+  }
+}
+
 TEST_F(SceneQuality, TheCommandStandsBeforeTheScene) {
   const auto file = write("scene.toml", "quality = \"fine\"\n" + kBall);
   EXPECT_EQ(load_scene(file).quality, Quality::kFine);
