@@ -19,7 +19,11 @@ Json step_json(const StepRecord& s) {
          {"triangles", s.triangles},
          {"pairs_near", s.pairs_near},
          {"contacts", s.contacts},
+         {"parts", s.parts},
          {"contact_iterations", s.contact_iterations},
+         {"contact_residual", s.contact_residual},
+         {"contacts_unconverged", s.unconverged},
+         {"recovery_work", s.recovery_work},
          {"fields_built", s.fields_built},
          {"solves", s.solves},
          {"solver_iterations", s.solver_iterations},
@@ -164,8 +168,9 @@ Json event_json(const EventRecord& e) {
 
 Json totals_json(const RunRecord& r) {
   std::map<std::string, std::size_t> skipped, outcomes;
-  std::size_t solves = 0, cracks = 0, fragments = 0;
+  std::size_t solves = 0, cracks = 0, fragments = 0, unconverged = 0;
   for (const StepRecord& s : r.steps) {
+    unconverged += s.unconverged;
     solves += s.solves, cracks += s.cracks, fragments += s.fragments;
     for (const auto& [reason, count] : s.skipped) skipped[reason] += count;
   }
@@ -175,6 +180,7 @@ Json totals_json(const RunRecord& r) {
          {"solves", solves},
          {"cracks", cracks},
          {"new_bodies", fragments},
+         {"contacts_unconverged", unconverged},
          {"bodies", r.steps.empty() ? 0 : r.steps.back().bodies}};
   j["crack_outcomes"] = outcomes;
   j["skipped"] = skipped;

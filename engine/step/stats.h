@@ -16,7 +16,10 @@ struct StepRecord {
   Real time = 0;  // s, at the end of the step
   std::size_t bodies = 0, asleep = 0, triangles = 0;
   std::size_t pairs_near = 0, contacts = 0, fields_built = 0;
-  int contact_iterations = 0;
+  int contact_iterations = 0, parts = 0;  // the most of a contact problem; the step was cut into
+  std::size_t unconverged = 0;            // contact problems that kept a residual above their tolerance
+  Real contact_residual = 0;              // the largest, over the tolerance
+  Real recovery_work = 0;                 // J, by pushing bodies out of penetration
   std::size_t solves = 0, solver_iterations = 0, cracks = 0, fragments = 0;  // fragments: new bodies
   std::map<std::string, std::size_t> skipped;  // reason -> bodies whose stress was not solved
   Real rigid_seconds = 0, fracture_seconds = 0;

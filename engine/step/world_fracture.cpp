@@ -283,7 +283,9 @@ void World::advance() {
   step.step = steps, step.time = time();
   step.pairs_near = stats.contact.pairs_near, step.contacts = contacts.size(),
   step.fields_built = stats.contact.fields_built;
-  step.contact_iterations = stats.iterations, step.asleep = stats.asleep;
+  step.contact_iterations = stats.iterations, step.parts = stats.parts, step.asleep = stats.asleep;
+  step.unconverged = stats.unconverged, step.contact_residual = stats.residual;
+  step.recovery_work = stats.recovery_work;
   {
     const Stopwatch watch(step.fracture_seconds);
     // By id: bodies shift while fragments replace their parents, and fragments of this step carry no contact yet.
