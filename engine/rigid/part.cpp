@@ -139,8 +139,8 @@ void limit_energy(const IslandProblem& start, IslandProblem& problem, std::vecto
   problem.rows = std::move(rows), after = std::move(motions);
 }
 
-// A solve that ends above its tolerance may push too far, or rub along the motion: impulses scaled down to those
-// without work do not. What then penetrates is pushed out by displacement.
+// A solve that ends above its tolerance may push too far, or rub along the motion: impulses scaled down until they do no
+// work (in the worst case to none for this part) do not. What then penetrates is pushed out by displacement.
 void limit_push(const IslandProblem& start, std::span<const Motion> before, IslandProblem& problem,
                 std::vector<Motion>& after) {
   if (work(problem.rows, before, after) <= 0) return;
