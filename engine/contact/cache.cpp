@@ -21,6 +21,7 @@ void ContactCache::update(std::span<const Body> bodies) {
       entry.bounds.box = bounding_box(*body.mesh);
       for (std::size_t v = 0; v < body.mesh->vertex_count(); ++v)
         entry.bounds.radius = std::max(entry.bounds.radius, distance(body.mesh->vertices[v], body.mass.centre));
+      entry.bounds.thickness = 2 * signed_volume(*body.mesh) / surface_area(*body.mesh);
     }
     const bool unique = kept.emplace(body.id, std::move(entry)).second;
     SHERD_CHECK(unique, "two bodies share the id {}", body.id.value);

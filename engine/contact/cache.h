@@ -20,10 +20,11 @@ class ContactCache {
  public:
   explicit ContactCache(const FieldOptions& options = {}) : options_(options) {}
 
-  // Box of the mesh, material coordinates, and the radius of the ball about the centre of mass that holds it.
+  // Of the mesh, material coordinates, metres.
   struct Bounds {
     Box box;
-    Real radius = 0;
+    Real radius = 0;     // of the ball about the centre of mass that holds it
+    Real thickness = 0;  // 2 volume / area: of a plate its thickness, of a ball two thirds of its radius
   };
   // Brings the cache up to date with the bodies: drops entries of bodies that are gone or changed their mesh, bounds
   // the new.

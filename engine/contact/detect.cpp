@@ -11,83 +11,6 @@ namespace {
 // A sample whose own normal points the way it would be pushed lies on the far side of its body: not a contact.
 constexpr Real kFarSide = 0.3;
 
-struct Proxy {
-  Box box;         // world, unswept
-  Real reach = 0;  // farthest any point moves in the step, m
-  Real turn = 0;   // the part of it by rotation
-  Real diagonal = 0;
-};
-
-Proxy make_proxy(const Body& body, const ContactCache::Bounds& bounds, Real dt) {
-  const Mat3 r = to_matrix(body.pose.orientation);
-  const Vec3 centre = to_world(body, bounds.box.centre()), half = 0.5 * (bounds.box.high - bounds.box.low);
-  Vec3 extent;
-  for (int i = 0; i < 3; ++i)
-    extent[i] = std::abs(r[i][0]) * half.x + std::abs(r[i][1]) * half.y + std::abs(r[i][2]) * half.z;
-  Proxy p;
-  p.box.low = centre - extent, p.box.high = centre + extent;
-  p.diagonal = bounds.box.diagonal();
-  if (body.fixed) return p;
-  p.turn = norm(body.angular_velocity) * bounds.radius * dt;
-  p.reach = norm(body.velocity) * dt + p.turn;
-  return p;
-}
-
-// Gap that the step may close. Not by the relative velocity alone: of fragments flying together one may be stopped in
-// the step.
-Real pair_margin(const Body& a, const Body& b, const Proxy& pa, const Proxy& pb, const DetectOptions& options) {
-  const Vec3 va = a.fixed ? Vec3{} : a.velocity, vb = b.fixed ? Vec3{} : b.velocity;
-  return std::max({norm(va - vb), norm(va), norm(vb)}) * options.dt + pa.turn + pb.turn +
-         options.margin * std::min(pa.diagonal, pb.diagonal);
-}
-
-using Pair = std::pair<std::uint32_t, std::uint32_t>;
-
-// Sweep along x over the boxes grown by each body's own share of the margin; then the exact margin of the pair.
-std::vector<Pair> near_pairs(std::span<const Body> bodies, const std::vector<Proxy>& proxies,
-                             const DetectOptions& options) {
-  std::vector<std::uint32_t> order(bodies.size());
-  std::vector<Box> grown(bodies.size());
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    const Real m = proxies[i].reach + options.margin * proxies[i].diagonal;
-    order[i] = i;
-    grown[i].low = proxies[i].box.low - Vec3{m, m, m}, grown[i].high = proxies[i].box.high + Vec3{m, m, m};
-  }
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return grown[a].low.x != grown[b].low.x ? grown[a].low.x < grown[b].low.x : a < b;
-  });
-  std::vector<Pair> pairs;
-  for (std::size_t s = 0; s < order.size(); ++s)
-    for (std::size_t t = s + 1; t < order.size() && grown[order[t]].low.x <= grown[order[s]].high.x; ++t) {
-      const std::uint32_t a = std::min(order[s], order[t]), b = std::max(order[s], order[t]);
-      if (bodies[a].fixed && bodies[b].fixed) continue;
-      const auto rests = [&](std::uint32_t i) {
-        return bodies[i].fixed || (!options.resting.empty() && options.resting[i] != 0);
-      };
-      if (!options.resting.empty() && rests(a) && rests(b)) continue;
-      if (!grown[a].overlaps(grown[b])) continue;
-      const Real m = pair_margin(bodies[a], bodies[b], proxies[a], proxies[b], options);
-      Box box = proxies[a].box;
-      box.low -= Vec3{m, m, m}, box.high += Vec3{m, m, m};
-      if (box.overlaps(proxies[b].box)) pairs.emplace_back(a, b);
-    }
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
-}
-
-struct Placement {  // maps the shell's material space to the field's: y = rotation x + shift
-  Mat3 rotation;
-  Vec3 shift;
-};
-
-Placement between(const Body& from, const Body& to) {
-  const Mat3 a = to_matrix(from.pose.orientation), bt = transpose(to_matrix(to.pose.orientation));
-  Placement p;
-  p.rotation = bt * a;
-  p.shift = bt * (from.pose.position - a * from.mass.centre - to.pose.position) + to.mass.centre;
-  return p;
-}
-
 // Exact distances cost a microsecond each, and touching crack faces have hundreds of samples: where there are many,
 // each chunk sends the few that stand for its neighbourhood.
 constexpr std::size_t kFew = 64, kOfAChunk = 4, kOfAShell = 32;
@@ -98,9 +21,9 @@ std::vector<std::uint32_t> rough_samples(const PointShell& shell, const SignedDi
   std::vector<Contact> rough, chunk_rough;
   std::vector<std::size_t> ends;
   for (const PointShell::Chunk& chunk : shell.chunks) {
-    if (field.value(place.rotation * chunk.centre + place.shift) > reject + chunk.radius) continue;
+    if (field.beyond(place(chunk.centre), reject + chunk.radius)) continue;
     for (std::uint32_t i = chunk.first; i < chunk.first + chunk.count; ++i) {
-      const Real value = field.value(place.rotation * shell.points[i] + place.shift);
+      const Real value = field.value(place(shell.points[i]));
       if (value > reject) continue;
       Contact c;
       c.a = BodyId{i};
@@ -128,12 +51,12 @@ std::vector<std::uint32_t> rough_samples(const PointShell& shell, const SignedDi
 // Shell of `owner` against the distance of `other`; contacts are named (a, b) as the pair, normals point from b to a.
 void shell_against_field(const Body& owner, const CollisionShape& shell_shape, const Body& other,
                          const CollisionShape& field_shape, Real margin, bool owner_is_a, std::vector<Contact>& found) {
-  const Placement place = between(owner, other);
+  const Placement place = placement(owner, other);
   const PointShell& shell = shell_shape.shell();
   const SignedDistanceField& field = field_shape.field();
   // Between nodes the field overestimates by little, except at the other's tips, and those are in the other's shell.
   for (const std::uint32_t i : rough_samples(shell, field, place, margin + 0.5 * field.spacing())) {
-    const Vec3 p = place.rotation * shell.points[i] + place.shift;
+    const Vec3 p = place(shell.points[i]);
     const CollisionShape::Nearest near = field_shape.nearest(p, std::max(margin, 2 * field.spacing() - field.value(p)));
     if (!near.found || near.distance > margin) continue;
     if (dot(place.rotation * shell.normals[i], near.normal) > kFarSide) continue;
@@ -145,6 +68,38 @@ void shell_against_field(const Body& owner, const CollisionShape& shell_shape, c
     c.depth = -near.distance;
     found.push_back(c);
   }
+}
+
+// Edges that cross without a sample nearby; deeper than a quarter of the thinner wall they belong to its far side.
+void edges_against_edges(const Body& a, const ContactCache& cache, const Body& b, Real margin,
+                         std::vector<Contact>& found) {
+  const CollisionShape &sa = cache.shape(a), &sb = cache.shape(b);
+  const Real depth = 0.25 * std::min(cache.bounds(a).thickness, cache.bounds(b).thickness);
+  std::vector<EdgeCrossing> crossings;
+  edge_crossings(sa.edges(), sb.edges(), placement(a, b), sa.field(), sb.field(), margin, depth, crossings);
+  for (const EdgeCrossing& e : crossings) {
+    Contact c;
+    c.a = a.id, c.b = b.id;
+    c.point = to_world(b, e.point);
+    c.normal = rotate(b.pose.orientation, e.normal);
+    c.depth = -e.distance;
+    found.push_back(c);
+  }
+}
+
+// Whether the material boxes, `a`'s placed into the coordinates of `b` and the other way round, come within the margin:
+// world boxes of turned plates overlap long before the plates do.
+bool boxes_near(const Box& a, const Box& b, const Placement& place, Real margin) {
+  const auto misses = [&](const Box& own, const Box& other, const Placement& p) {
+    const Vec3 centre = p(own.centre()), half = 0.5 * (own.high - own.low);
+    for (int i = 0; i < 3; ++i) {
+      const Real extent = std::abs(p.rotation[i][0]) * half.x + std::abs(p.rotation[i][1]) * half.y +
+                          std::abs(p.rotation[i][2]) * half.z + margin;
+      if (centre[i] - extent > other.high[i] || centre[i] + extent < other.low[i]) return true;
+    }
+    return false;
+  };
+  return !misses(a, b, place) && !misses(b, a, inverse(place));
 }
 
 void ground_contacts(const Body& body, Real height, Real margin, std::vector<Contact>& found) {
@@ -179,10 +134,13 @@ void detect_contacts(std::span<const Body> bodies, const GroundPlane& ground, co
   SHERD_CHECK(options.resting.empty() || options.resting.size() == bodies.size(), "one resting flag a body");
   check_bodies(bodies);
   cache.update(bodies);
-  std::vector<Proxy> proxies(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    proxies[i] = make_proxy(bodies[i], cache.bounds(bodies[i]), options.dt);
-  std::vector<Pair> pairs = near_pairs(bodies, proxies, options);
+  const SweepOptions sweep{options.dt, options.margin, options.resting};
+  const std::vector<Proxy> proxies = make_proxies(bodies, cache, options.dt);
+  std::vector<BodyPair> pairs = near_pairs(bodies, proxies, sweep);
+  const auto known_apart = [&](const BodyPair& p) {
+    return std::binary_search(options.apart.begin(), options.apart.end(), p);
+  };
+  std::erase_if(pairs, known_apart);
   std::vector<std::size_t> needed;
   for (const auto& [a, b] : pairs) needed.push_back(a), needed.push_back(b);
   cache.build(bodies, needed);
@@ -194,8 +152,9 @@ void detect_contacts(std::span<const Body> bodies, const GroundPlane& ground, co
   if (ground.enabled)
     for (std::uint32_t i = 0; i < plane; ++i) {
       const Proxy& p = proxies[i];
-      const bool rests = bodies[i].fixed || (!options.resting.empty() && options.resting[i] != 0);
-      if (!rests && p.box.low.y <= ground.height + p.reach + options.margin * p.diagonal) pairs.emplace_back(i, plane);
+      if (!sweep.rests(bodies, i) && !known_apart({i, plane}) &&
+          p.box.low.y <= ground.height + p.reach + options.margin * p.diagonal)
+        pairs.emplace_back(i, plane);
     }
   std::sort(pairs.begin(), pairs.end());
   std::vector<std::vector<Contact>> found(pairs.size());
@@ -207,10 +166,12 @@ void detect_contacts(std::span<const Body> bodies, const GroundPlane& ground, co
       ground_contacts(a, ground.height, proxies[i].reach + options.margin * proxies[i].diagonal, found[n]);
     } else {
       const Body& b = bodies[j];
-      const Real margin = pair_margin(a, b, proxies[i], proxies[j], options);
+      const Real margin = pair_margin(a, b, proxies[i], proxies[j], sweep);
+      if (!boxes_near(cache.bounds(a).box, cache.bounds(b).box, placement(a, b), margin)) return;
       const CollisionShape &sa = cache.shape(a), &sb = cache.shape(b);
       shell_against_field(a, sa, b, sb, margin, true, found[n]);
       shell_against_field(b, sb, a, sa, margin, false, found[n]);
+      edges_against_edges(a, cache, b, margin, found[n]);
     }
     candidates[n] = found[n].size();
     reduce_contacts(found[n], options.max_contacts);

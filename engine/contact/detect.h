@@ -1,13 +1,13 @@
 // Contact detection: sweep and prune over world boxes, then the point shell of each body of a pair against the signed
-// distance of the other (both ways), and vertices against the ground plane (the paper's section 7: distance field
-// versus point shell). Contacts still apart are reported when the bodies may meet within the step, so that thin shards
-// do not tunnel.
+// distance of the other (both ways), their sharp edges against each other, and vertices against the ground plane (the
+// paper's section 7: distance field versus point shell). Contacts still apart are reported when the bodies may meet
+// within the step, so that thin shards do not tunnel.
 #pragma once
 #include <span>
 #include <vector>
 
-#include "engine/contact/cache.h"
 #include "engine/contact/contact.h"
+#include "engine/contact/near_pairs.h"
 
 namespace sherd {
 
@@ -26,6 +26,7 @@ struct DetectOptions {
   std::size_t max_contacts = 12;  // kept of a pair
   // Per body, or empty: a pair of two resting bodies is skipped, and a resting body against the ground.
   std::span<const std::uint8_t> resting = {};
+  std::span<const BodyPair> apart = {};  // ascending; pairs that are known not to meet, and are not asked
 };
 
 // Counts are of the last call, except fields_built (of the cache, in all).

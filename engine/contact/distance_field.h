@@ -27,6 +27,11 @@ class SignedDistanceField {
 
   // Beyond the grid: a lower bound from the nearest grid point.
   Real value(const Vec3& p) const;
+  // value(p) > bound, for most far points without a look at the grid (a random access to memory).
+  bool beyond(const Vec3& p, Real bound) const {
+    const Vec3 out = max(max(origin_ - p, p - high_), Vec3{});
+    return norm2(out) > bound * std::abs(bound) || value(p) > bound;
+  }
   // Gradient of the trilinear interpolant (not normalized); beyond the grid that of the nearest grid point.
   Vec3 gradient(const Vec3& p) const;
   Real spacing() const { return h_; }

@@ -75,6 +75,24 @@ Real shell_spacing(const SurfaceMesh& mesh, Real field_step) {
   return std::max(2 * field_step, std::max({e.x, e.y, e.z}) / 16);
 }
 
+// Branch and bound over chunks and samples: between nodes the field errs by a grid step at most, beyond the grid it is
+// a lower bound.
+Real nearest_sample(const PointShell& shell, const CollisionShape& other, const Placement& place, Real limit) {
+  const SignedDistanceField& field = other.field();
+  Real least = limit;
+  for (const PointShell::Chunk& c : shell.chunks) {
+    if (field.beyond(place(c.centre), least + c.radius + field.spacing())) continue;
+    for (std::uint32_t i = c.first; i < c.first + c.count; ++i) {
+      const Vec3 p = place(shell.points[i]);
+      const Real rough = field.value(p);
+      if (rough - field.spacing() > least) continue;
+      const CollisionShape::Nearest near = other.nearest(p, std::max(least, field.spacing() - rough));
+      if (near.found) least = std::min(least, near.distance);
+    }
+  }
+  return least;
+}
+
 }  // namespace
 
 PseudoNormals pseudo_normals(const SurfaceMesh& mesh) {
@@ -120,7 +138,8 @@ CollisionShape::CollisionShape(std::shared_ptr<const SurfaceMesh> mesh, const Fi
       bvh_(*mesh_),
       normals_(pseudo_normals(*mesh_)),
       field_(*mesh_, bvh_, options),
-      shell_(point_shell(*mesh_, normals_, shell_spacing(*mesh_, field_.spacing()))) {}
+      shell_(point_shell(*mesh_, normals_, shell_spacing(*mesh_, field_.spacing()))),
+      edges_(sharp_edges(*mesh_)) {}
 
 CollisionShape::Nearest CollisionShape::nearest(const Vec3& p, Real max_distance) const {
   Nearest result;
@@ -145,6 +164,15 @@ CollisionShape::Nearest CollisionShape::nearest(const Vec3& p, Real max_distance
   const bool on_surface = d <= 1e-12 * (norm(c.point) + norm(v1 - v0));
   result = {c.point, on_surface ? n : away * (side / d), side * d, true};
   return result;
+}
+
+Real gap_between(const CollisionShape& own, const CollisionShape& other, const Placement& place, Real limit) {
+  Real least = std::min(nearest_sample(own.shell(), other, place, limit), limit);
+  least = std::min(nearest_sample(other.shell(), own, inverse(place), least), least);
+  std::vector<EdgeCrossing> crossings;
+  edge_crossings(own.edges(), other.edges(), place, own.field(), other.field(), least, 0, crossings);
+  for (const EdgeCrossing& c : crossings) least = std::min(least, c.distance);
+  return least;
 }
 
 }  // namespace sherd

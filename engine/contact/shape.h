@@ -1,9 +1,11 @@
-// What narrow-phase detection needs of one mesh: samples of its surface (the point shell) and its signed distance, once
-// on a grid to reject points fast and once exactly for the few that remain. All in mesh (material) coordinates, metres.
+// What narrow-phase detection needs of one mesh: samples of its surface (the point shell), its sharp edges, and its
+// signed distance, once on a grid to reject points fast and once exactly for the few that remain. All in mesh
+// (material) coordinates, metres.
 #pragma once
 #include <memory>
 
 #include "engine/contact/distance_field.h"
+#include "engine/contact/edges.h"
 
 namespace sherd {
 
@@ -41,6 +43,7 @@ class CollisionShape {
   Nearest nearest(const Vec3& p, Real max_distance) const;
   const SignedDistanceField& field() const { return field_; }
   const PointShell& shell() const { return shell_; }
+  const EdgeSet& edges() const { return edges_; }
 
  private:
   std::shared_ptr<const SurfaceMesh> mesh_;
@@ -48,6 +51,12 @@ class CollisionShape {
   PseudoNormals normals_;
   SignedDistanceField field_;
   PointShell shell_;
+  EdgeSet edges_;
 };
+
+// Signed distance of two bodies at poses that `place` relates (material of `own` to that of `other`): of the nearest
+// samples either way and crossing edges; `limit` when it is that or more. Less than the true distance by no more than
+// what curved or rough parts bulge between samples.
+Real gap_between(const CollisionShape& own, const CollisionShape& other, const Placement& place, Real limit);
 
 }  // namespace sherd

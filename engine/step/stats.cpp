@@ -21,12 +21,20 @@ Json step_json(const StepRecord& s) {
          {"triangles", s.triangles},
          {"pairs_near", s.pairs_near},
          {"contacts", s.contacts},
+         {"parts", s.parts},
          {"contact_iterations", s.contact_iterations},
+         {"contact_residual", s.contact_residual},
+         {"contacts_unconverged", s.unconverged},
+         {"recovery_work", s.recovery_work},
          {"fields_built", s.fields_built},
          {"solves", s.solves},
          {"solver_iterations", s.solver_iterations},
          {"cracks", s.cracks},
          {"new_bodies", s.fragments}};
+  j["energy"] = {{"kinetic", s.energy.kinetic},
+                 {"potential", s.energy.potential},
+                 {"growth", s.energy_growth},
+                 {"holds", s.energy_holds}};
   j["skipped"] = Json::object();
   for (const auto& [reason, count] : s.skipped) j["skipped"][reason] = count;
   j["seconds"] = {{"rigid", s.rigid_seconds}, {"fracture", s.fracture_seconds}};
@@ -180,8 +188,9 @@ Json event_json(const EventRecord& e) {
 
 Json totals_json(const RunRecord& r) {
   std::map<std::string, std::size_t> skipped, outcomes;
-  std::size_t solves = 0, cracks = 0, fragments = 0;
+  std::size_t solves = 0, cracks = 0, fragments = 0, unconverged = 0;
   for (const StepRecord& s : r.steps) {
+    unconverged += s.unconverged;
     solves += s.solves, cracks += s.cracks, fragments += s.fragments;
     for (const auto& [reason, count] : s.skipped) skipped[reason] += count;
   }
@@ -191,6 +200,7 @@ Json totals_json(const RunRecord& r) {
          {"solves", solves},
          {"cracks", cracks},
          {"new_bodies", fragments},
+         {"contacts_unconverged", unconverged},
          {"bodies", r.steps.empty() ? 0 : r.steps.back().bodies}};
   j["crack_outcomes"] = outcomes;
   j["skipped"] = skipped;

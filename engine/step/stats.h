@@ -6,6 +6,7 @@
 
 #include "engine/mesh/certificate.h"
 #include "engine/mesh/thickness_resolution.h"
+#include "engine/rigid/energy.h"
 #include "engine/rigid/step.h"
 #include "engine/step/fracture_event.h"
 #include "engine/step/skip_counts.h"
@@ -17,7 +18,13 @@ struct StepRecord {
   Real time = 0;  // s, at the end of the step
   std::size_t bodies = 0, asleep = 0, triangles = 0;
   std::size_t pairs_near = 0, contacts = 0, fields_built = 0;
-  int contact_iterations = 0;
+  int contact_iterations = 0, parts = 0;  // the most of a contact problem; the step was cut into
+  std::size_t unconverged = 0;            // contact problems that kept a residual above their tolerance
+  Real contact_residual = 0;              // the largest, over the tolerance
+  Real recovery_work = 0;                 // J, by pushing bodies out of penetration
+  Energy energy;                          // after the motion, before bodies break
+  Real energy_growth = 0;                 // J, that the motion added beyond recovery; negative where it was lost
+  bool energy_holds = true;               // within the tolerance of energy_balance()
   std::size_t solves = 0, solver_iterations = 0, cracks = 0, fragments = 0;  // fragments: new bodies
   std::map<std::string, std::size_t> skipped;  // reason -> bodies whose stress was not solved
   Real rigid_seconds = 0, fracture_seconds = 0;

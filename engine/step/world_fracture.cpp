@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/load/tension_bound.h"
+#include "engine/rigid/energy.h"
 #include "engine/step/elastic_settings.h"
 #include "engine/step/guided_event.h"
 #include "engine/step/inherit.h"
@@ -340,6 +341,7 @@ void World::move_bodies(StepRecord& step) {
     cache.update(bodies);
     cache.build(bodies, all);
   }
+  const std::vector<Body> before = bodies;
   RigidStats stats;
   {
     const Stopwatch watch(step.rigid_seconds, "rigid step");
@@ -347,7 +349,11 @@ void World::move_bodies(StepRecord& step) {
   }
   step.pairs_near = stats.contact.pairs_near, step.contacts = contacts.size(),
   step.fields_built = stats.contact.fields_built;
-  step.contact_iterations = stats.iterations, step.asleep = stats.asleep;
+  step.contact_iterations = stats.iterations, step.parts = stats.parts, step.asleep = stats.asleep;
+  step.unconverged = stats.unconverged, step.contact_residual = stats.residual;
+  step.recovery_work = stats.recovery_work;
+  const EnergyBalance balance = energy_balance(before, bodies, rigid, stats);
+  step.energy = balance.after, step.energy_growth = balance.growth(), step.energy_holds = balance.holds();
   std::size_t moving = 0;
   for (const Body& b : bodies) moving += !b.fixed;
   record.skips.skipped(Skip::kSleep, stats.asleep);

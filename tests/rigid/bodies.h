@@ -1,12 +1,14 @@
 // Bodies and runs for the tests of the rigid stage.
 #pragma once
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <memory>
 #include <vector>
 
 #include "engine/mesh/shapes.h"
-#include "engine/rigid/step.h"
+#include "engine/rigid/energy.h"
+#include "engine/rigid/free_motion.h"
 
 namespace sherd {
 
@@ -31,7 +33,13 @@ struct Sim {
   std::vector<Contact> contacts;
   RigidStats stats;
 
-  void step() { rigid_step(bodies, ground, options, cache, state, contacts, stats); }
+  // Every step of every test keeps the balance of energy.
+  void step() {
+    const std::vector<Body> before = bodies;
+    rigid_step(bodies, ground, options, cache, state, contacts, stats);
+    const EnergyBalance balance = energy_balance(before, bodies, options, stats);
+    EXPECT_TRUE(balance.holds()) << "grows by " << balance.growth() << " J, tolerance " << balance.tolerance;
+  }
   void steps(int n) {
     for (int i = 0; i < n; ++i) step();
   }
@@ -42,16 +50,17 @@ inline Vec3 momentum(const Sim& run) {
   for (const Body& b : run.bodies) p += b.velocity * b.mass.mass;
   return p;
 }
+// About the world's origin.
 inline Vec3 angular_momentum(const Body& b) {
-  return world_inertia(b) * b.angular_velocity;
+  return cross(b.pose.position, b.velocity * b.mass.mass) + spin_momentum(b);
 }
-inline Real kinetic_energy(const Body& b) {
-  return 0.5 * b.mass.mass * norm2(b.velocity) + 0.5 * dot(b.angular_velocity, angular_momentum(b));
+inline Vec3 angular_momentum(const Sim& run) {
+  Vec3 l;
+  for (const Body& b : run.bodies) l += angular_momentum(b);
+  return l;
 }
 inline Real kinetic_energy(const Sim& run) {
-  Real e = 0;
-  for (const Body& b : run.bodies) e += kinetic_energy(b);
-  return e;
+  return energy(run.bodies, {}).kinetic;
 }
 
 }  // namespace sherd

@@ -5,26 +5,6 @@
 namespace sherd {
 namespace {
 
-TEST(ContactLaw, CollisionConservesMomentumAndNeverGainsEnergy) {
-  Sim run;
-  run.options.gravity = {0, 0, 0};
-  run.bodies = {make_body(1, make_sphere(0.05, 0.02), {-0.1, 0, 0}, {3, 0, 0}),
-                make_body(2, make_box({0.1, 0.15, 0.1}, 0.05), {0.1, 0.02, 0.01}, {-2, 0.1, 0})};
-  run.bodies[1].angular_velocity = {1, 2, 3};
-  const Vec3 p = momentum(run);
-  const Real scale = run.bodies[0].mass.mass * 3 + run.bodies[1].mass.mass * 2;
-  const Real e = kinetic_energy(run);
-  bool hit = false;
-  for (int i = 0; i < 60; ++i) {
-    run.step();
-    hit = hit || !run.contacts.empty();
-    ASSERT_LT(norm(momentum(run) - p), 1e-12 * scale);
-    ASSERT_LT(kinetic_energy(run), e * (1 + 1e-3));  // 1e-3: the energy error of free tumbling
-  }
-  EXPECT_TRUE(hit);
-  EXPECT_GT(run.bodies[1].velocity.x, -1.9);
-}
-
 TEST(ContactLaw, DroppedSphereBouncesWithTheRestitution) {
   for (const Real e : {0.0, 0.5, 0.8}) {
     Sim run;
@@ -79,18 +59,28 @@ TEST(ContactLaw, FrictionHoldsUpToItsAngle) {
   }
 }
 
-TEST(ContactLaw, FastThinShardDoesNotTunnel) {
-  Sim run;
-  run.bodies = {make_body(1, make_plate(0.3, 0.3, 0.004, 0.05), {0, 0, 0}),
-                make_body(2, make_plate(0.02, 0.02, 0.002, 0.01), {0.011, 0.2, 0.013}, {0, -30, 0})};  // 30 mm a step
-  run.bodies[0].fixed = true;
-  run.bodies[1].pose.orientation = from_rotation_vector({0.3, 0.2, 0.1});
-  for (int i = 0; i < 40; ++i) {
-    run.step();
-    ASSERT_GT(run.bodies[1].pose.position.y, 0);
+// The same on a fixed inclined body: gravity stays, the plane is a mesh.
+TEST(ContactLaw, FrictionHoldsUpToItsAngleOnAnInclinedBody) {
+  const Real mu = 0.5, critical = std::atan(mu);
+  for (const Real degrees : {-1.0, 1.0}) {
+    Sim run;
+    const Real angle = critical + degrees * 3.14159265358979 / 180;
+    const Quat tilt = from_rotation_vector({0, 0, -angle});
+    const Vec3 up = rotate(tilt, {0, 1, 0}), down = rotate(tilt, {1, 0, 0});
+    run.bodies = {make_body(1, make_box({1, 0.1, 0.5}, 0.25), {0, 0, 0}),
+                  make_body(2, make_box({0.2, 0.05, 0.2}, 0.1), up * 0.075 - down * 0.2)};
+    run.bodies[0].fixed = true;
+    for (Body& b : run.bodies) b.pose.orientation = tilt, b.material.friction = mu;
+    const Vec3 start = run.bodies[1].pose.position;
+    run.steps(1000);
+    const Real slide = dot(run.bodies[1].pose.position - start, down);
+    if (degrees < 0) {
+      EXPECT_LT(std::abs(slide), 1e-3);
+    } else {
+      // As on the ground; recovery of penetration and the solve leave 5 mm on 97.
+      EXPECT_NEAR(slide, 0.5 * 9.81 * (std::sin(angle) - mu * std::cos(angle)), 0.005);
+    }
   }
-  EXPECT_LT(run.bodies[1].pose.position.y, 0.2);
-  EXPECT_GT(run.bodies[1].velocity.y, -1);
 }
 
 }  // namespace
