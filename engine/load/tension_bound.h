@@ -2,13 +2,13 @@
 // An estimate calibrated on full solves, not a theorem; tests/step/tension_bound_test.cpp holds it against a thousand
 // random loads on bodies of all kinds.
 #pragma once
-#include "kernels/core/vec3.h"
+#include "engine/mesh/bvh.h"
 
 namespace sherd {
 
 struct BoundedLoad {
   Real force = 0;     // sizes of all contact forces together, N
-  Real pressure = 0;  // largest of force over the area of its patch, Pa
+  Real pressure = 0;  // largest of force over the area of its patch and solidity(), Pa
   Real density = 0;   // kg/m^3
   Real spin = 0;      // rad/s
 };
@@ -24,5 +24,11 @@ struct BoundedBody {
 // 410 solves (boxes, bars 5:1 and 20:1, plates, strips, rings, shells, a goblet, shards of goblet and plate; one to
 // three contacts, friction up to 0.8) the largest stress over this was 0.45.
 Real tension_bound(const BoundedBody& body, const BoundedLoad& load);
+
+// How much solid bears a contact at `point`: its share of the half ball of the patch's radius (m), from kLeastSolidity
+// to 1. A flat face has 1, the edge of a cube 0.5, its corner 0.25; the thin edge of a shard little, and is torn by
+// what a face would bear. Of 64 fixed points.
+Real solidity(const TriangleBvh& body, const Vec3& point, Real radius);
+inline constexpr Real kLeastSolidity = 0.05;
 
 }  // namespace sherd

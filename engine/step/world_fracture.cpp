@@ -86,9 +86,13 @@ bool World::too_light(std::size_t i, Real force, Real pressure) const {
 }
 
 bool World::too_light(std::size_t i, const std::vector<BodyContact>& loads) const {
+  const TriangleBvh& bvh = companions[i].solid->bvh();
   Real force = 0, pressure = 0;
-  for (const BodyContact& c : loads)
-    force += norm(c.force), pressure = std::max(pressure, norm(c.force) / disc(c.patch_radius));
+  for (const BodyContact& c : loads) {
+    const Real size = norm(c.force);
+    force += size;
+    pressure = std::max(pressure, size / disc(c.patch_radius) / solidity(bvh, c.point, c.patch_radius));
+  }
   return too_light(i, force, pressure);
 }
 
@@ -129,7 +133,7 @@ World::Due World::due(std::size_t i) {
     const ContactLoadOptions options = load_options();
     const Real shortest = shortest_duration(options),
                area = disc(smallest_patch(companions[i].solid->diagonal(), options));
-    if (too_light(i, impulse / shortest, largest / shortest / area)) due.skipped = kTooLight;
+    if (too_light(i, impulse / shortest, largest / shortest / area / kLeastSolidity)) due.skipped = kTooLight;
   }
   if (due.skipped.empty()) due.loads = loads_on(i);
   if (bounded && due.skipped.empty() && too_light(i, due.loads)) due.skipped = kTooLight;

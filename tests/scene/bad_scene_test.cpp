@@ -15,7 +15,7 @@ TEST_F(BadScene, UnknownKeyNamesTheNearestOne) {
       problem("zzzzzzzzzz = 60\n" + kBall),
       "scene.toml:1:1: zzzzzzzzzz: unknown key; known keys: gravity, time_step, duration, frame_rate, quality, body, "
       "load, ground, "
-      "contact, solver, fracture, camera, light, output");
+      "contact, solver, fracture, skip, camera, light, output");
   EXPECT_EQ(problem(kBall + "[ground]\nfricton = 1\n"),
             "scene.toml:5:1: ground.fricton: unknown key; did you mean 'friction'?");
 }
@@ -191,7 +191,7 @@ TEST_F(BadScene, AllProblemsAreNamedAtOnceInFileOrder) {
             "scene.toml:2:1: speed: unknown key; known keys: gravity, time_step, duration, frame_rate, quality, body, "
             "load, ground, "
             "contact, "
-            "solver, fracture, camera, light, output\n"
+            "solver, fracture, skip, camera, light, output\n"
             "scene.toml:7:9: output.width: value 1 not allowed; allowed range 16 to 8192");
 }
 

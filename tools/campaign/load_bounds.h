@@ -24,8 +24,9 @@ struct BoundResult {
 // Boxes, balls, bars, plates, rings, shells, vessels, bodies with necks, holes and notches, and shards of a plate and a
 // block: some 20, of a few hundred triangles each.
 std::vector<BoundBody> bound_bodies();
-// `loads` on each body: one to three contacts anywhere, of random size, friction up to 0.8 and patches from the
-// smallest to a seventh of the diagonal, every fourth with spin. By body, then load; parallel, deterministic.
+// `loads` on each body: one to three contacts anywhere, half of them at vertices, of random size, friction up to 0.8
+// and patches from the smallest to a seventh of the diagonal, every fourth with spin. By body, then load; parallel,
+// deterministic.
 std::vector<BoundResult> check_bounds(const std::vector<BoundBody>& bodies, std::size_t loads, std::uint64_t seed);
 // A row a body: loads, largest and median of tension over bound; then loads whose tension exceeds their bound.
 std::string to_text(const std::vector<BoundResult>& results);
