@@ -27,10 +27,10 @@ std::array<Vec3, 64> make_samples() {
 }  // namespace
 
 Real tension_bound(const BoundedBody& body, const BoundedLoad& load) {
-  constexpr Real kMargin = 1.5, kContact = 0.8, kSlender = 0.16;
+  constexpr Real kMargin = 3, kSlender = 0.16, kNotch = 4;
   constexpr Real kRotation = 0.25;  // of density (spin diagonal)^2; a disc has 0.1
-  const Real t = body.thickness, d = body.diagonal;
-  const Real bending = load.force / (t * t) * (1 + kSlender * d / t), contact = kContact * load.pressure;
+  const Real t = body.thickness, d = body.diagonal, notch = body.notched ? kNotch : 1;
+  const Real bending = notch * load.force / (t * t) * (1 + kSlender * d / t), contact = load.pressure;
   return kMargin * std::max(bending, contact) + kRotation * load.density * load.spin * load.spin * d * d;
 }
 
@@ -39,6 +39,20 @@ Real solidity(const TriangleBvh& body, const Vec3& point, Real radius) {
   const auto solid =
       std::count_if(samples.begin(), samples.end(), [&](const Vec3& x) { return body.inside(point + radius * x); });
   return std::clamp(2 * static_cast<Real>(solid) / static_cast<Real>(samples.size()), kLeastSolidity, Real{1});
+}
+
+bool has_reentrant_creases(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twins) {
+  constexpr Real kCosine = 0.766;  // of 40 degrees
+  for (std::uint32_t e = 0; e < twins.size(); ++e) {
+    const std::uint32_t other = twins[e];
+    if (other == kNone || other < e) continue;
+    const Vec3 n = normalized(mesh.area_normal2(e / 3)), m = normalized(mesh.area_normal2(other / 3));
+    if (dot(n, m) > kCosine) continue;
+    const Vec3 opposite = mesh.corner(other / 3, static_cast<int>((other % 3 + 2) % 3)),
+               on_edge = mesh.corner(e / 3, static_cast<int>(e % 3));
+    if (dot(n, opposite - on_edge) > 0) return true;
+  }
+  return false;
 }
 
 }  // namespace sherd

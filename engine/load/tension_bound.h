@@ -14,15 +14,16 @@ struct BoundedLoad {
 };
 
 struct BoundedBody {
-  Real thickness = 0;  // of the thinnest parts that matter, m: the least of twice volume over area and of its walls
-  Real diagonal = 0;   // of the bounding box, m
+  Real thickness = 0;    // of the thinnest parts that matter, m: the least of twice volume over area and of its walls
+  Real diagonal = 0;     // of the bounding box, m
+  bool notched = false;  // has reentrant creases, which concentrate stress
 };
 
 // Pa. The worst of what bends a body and what pulls around a contact, times a margin. A free bar under a force in its
 // middle or at its end bends with M up to 0.15 F L, so its stress goes like F L / T^3; a plate under a point like
-// F / T^2; around a contact the surface is pulled by up to 0.7 of the mean pressure, at edges and with friction. Of
-// 410 solves (boxes, bars 5:1 and 20:1, plates, strips, rings, shells, a goblet, shards of goblet and plate; one to
-// three contacts, friction up to 0.8) the largest stress over this was 0.45.
+// F / T^2; reentrant creases raise either three to four times (a body with a neck); around a contact the surface is
+// pulled by up to its mean pressure, at edges and with friction. Of a thousand solves (tools/campaign/load_bounds.h)
+// the largest stress over this is 0.73.
 Real tension_bound(const BoundedBody& body, const BoundedLoad& load);
 
 // How much solid bears a contact at `point`: its share of the half ball of the patch's radius (m), from kLeastSolidity
@@ -30,5 +31,8 @@ Real tension_bound(const BoundedBody& body, const BoundedLoad& load);
 // what a face would bear. Of 64 fixed points.
 Real solidity(const TriangleBvh& body, const Vec3& point, Real radius);
 inline constexpr Real kLeastSolidity = 0.05;
+
+// Edges where the surface turns inward by more than 40 degrees; of meshes with twins (build_twins()).
+bool has_reentrant_creases(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twins);
 
 }  // namespace sherd

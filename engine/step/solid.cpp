@@ -26,6 +26,11 @@ Real Solid::thickness() {
   return thickness_;
 }
 
+BoundedBody Solid::bounded() {
+  if (!notched_) notched_ = has_reentrant_creases(*clean_, twins());
+  return {thickness(), diagonal(), *notched_};
+}
+
 Real Solid::crack_edge_length(const Vec3& x) {
   constexpr Real kPerWall = 0.4, kFinest = 0.25, kReach = 1.5;  // of the wall, of the mesh's edge, edges around x
   if (walls_.empty()) walls_ = wall_thickness(*clean_).vertex;

@@ -2,10 +2,12 @@
 // it, and the parts that depend on the mesh alone, built when first asked for and kept as long as the mesh lives.
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/body/mass.h"
 #include "engine/fracture/sheet.h"
+#include "engine/load/tension_bound.h"
 #include "engine/stress/stress.h"
 
 namespace sherd {
@@ -53,6 +55,7 @@ class Solid : public SolidState {
   // Of its thinnest parts, m: twice volume over area (of a plate its thickness, of a ball two thirds of its radius), or
   // the wall all but a hundredth of its surface is thicker than.
   Real thickness();
+  BoundedBody bounded();  // as tension_bound() sees it
   // Edge length that puts several rows of a crack's sheet between the two sides of the wall near x, m: the mesh's, or a
   // shorter one.
   Real crack_edge_length(const Vec3& x);
@@ -73,6 +76,7 @@ class Solid : public SolidState {
   Real edge_length_ = 0;
   Real volume_ = 0, diagonal_ = 0, thickness_ = 0;
   std::vector<Real> walls_;  // thickness at vertices
+  std::optional<bool> notched_;
   std::vector<std::uint32_t> twins_;
   std::unique_ptr<TriangleBvh> bvh_;
   std::unique_ptr<SurfaceRecovery> recovery_;

@@ -78,8 +78,8 @@ bool World::too_light(std::size_t i, Real force, Real pressure) const {
   Solid& solid = *companions[i].solid;
   const Body& body = bodies[i];
   const Real needed = (solid.partial.empty() ? fields.strength : fields.propagation_strength)->lower();
-  Real tension = tension_bound({solid.thickness(), solid.diagonal()},
-                               {force, pressure, body.mass.mass / body.mass.volume, norm(body.angular_velocity)});
+  Real tension =
+      tension_bound(solid.bounded(), {force, pressure, body.mass.mass / body.mass.volume, norm(body.angular_velocity)});
   const std::vector<bool> acting = acting_loads(i);
   if (std::find(acting.begin(), acting.end(), true) != acting.end()) tension += companions[i].last_tension;
   return tension < needed;

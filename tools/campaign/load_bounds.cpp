@@ -108,7 +108,7 @@ void check_body(const BoundBody& body, std::uint64_t seed, std::span<BoundResult
     BoundResult& r = out[k];
     r.body = body.name, r.load = k;
     const RandomLoad random_one = random_load(solid, k, random);
-    r.bound = tension_bound({solid.thickness(), solid.diagonal()}, random_one.bounded);
+    r.bound = tension_bound(solid.bounded(), random_one.bounded);
     SurfaceLoad pull;
     pull.patches = contact_patches(*mesh, random_one.contacts, solid.twins(), solid.bvh());
     pull.omega = random_one.omega;
