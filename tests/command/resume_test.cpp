@@ -1,5 +1,6 @@
 // `sherd run` that is stopped, killed, or runs out of disk: what is left is whole, and --resume ends with the bytes of
 // a run that was never stopped.
+#include <fmt/format.h>
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -69,18 +70,16 @@ class Resume : public Command {
     return shell("begin=$(date +%s%N); " + command +
                  " >&2 || exit; echo $(( ($(date +%s%N) - begin) / 1000000 )) | awk '{ print $1 / 1000 }'");
   }
-  // Seconds a run of the scene takes on this machine now, into the folder `whole`.
-  double timed_whole(const std::string& options) const {
-    const Outcome o = timed("\"$SHERD\" run scene.toml --out whole --quiet " + options);
-    EXPECT_EQ(o.code, 0) << o.errors;
-    return std::stod(o.output);
-  }
-  // Kills at moments spread over the run until it ends by itself; true when it was killed at least once.
-  bool run_killed(double seconds, int kills, const std::string& options) const {
+  // Kills at moments spread over the run, until it ends by itself: each some milliseconds after a picture is there, so
+  // that the run is on its way however slow the machine is. True when it was killed at least once.
+  bool run_killed(int kills, int milliseconds, const std::string& options) const {
+    constexpr int kPictures = 7;  // of kBreaking, but for the last
     const std::string run = "\"$SHERD\" run scene.toml --out killed --resume --quiet " + options;
     std::string script = "killed=0; ";
-    for (int i = 1; i <= kills; ++i)
-      script += run + " & run=$!; sleep " + std::to_string(seconds * (0.15 + 0.85 * (7 * i % 11) / 11)) +
+    for (int i = 0; i < kills; ++i)
+      script += run + " & run=$!; while [ ! -e killed/frames/" + fmt::format("frame_{:04}.png", i * kPictures / kills) +
+                " ] && kill -0 $run 2>/dev/null; do sleep 0.005; done; sleep " +
+                std::to_string(1e-3 * milliseconds * (7 * i % 11)) +
                 "; kill -9 $run 2>/dev/null; wait $run; code=$?; "
                 "case $code in 137) killed=$((killed + 1));; 0) ;; *) exit $code;; esac; ";
     const Outcome o = shell(script + run + " || exit; echo $killed");
@@ -96,17 +95,16 @@ class SlowResume : public Resume {};
 
 TEST_F(Resume, ARunKilledAtAnyMomentEndsWithTheSameBytes) {
   write("scene.toml", kBreaking);
-  const double seconds = timed_whole("--threads 2");
-  EXPECT_TRUE(run_killed(seconds, 5, "--threads 1 --checkpoint-every 3"));
+  ASSERT_EQ(sherd("run scene.toml --out whole --quiet --threads 2").code, 0);
+  EXPECT_TRUE(run_killed(5, 10, "--threads 1 --checkpoint-every 3"));
   expect_same("whole", "killed");
 }
 
 TEST_F(SlowResume, ARunKilledAtFortyMomentsEndsWithTheSameBytes) {
   write("scene.toml", kBreaking);
-  const double seconds = timed_whole("--threads 1");
+  ASSERT_EQ(sherd("run scene.toml --out whole --quiet --threads 1").code, 0);
   for (int round = 0; round < 4; ++round) {
-    EXPECT_TRUE(run_killed(seconds * (0.3 + 0.25 * round), 10,
-                           round % 2 == 0 ? "--checkpoint-every 1" : "--checkpoint-every 0.004s"));
+    EXPECT_TRUE(run_killed(10, 1 + 5 * round, round % 2 == 0 ? "--checkpoint-every 1" : "--checkpoint-every 0.004s"));
     expect_same("whole", "killed");
     fs::remove_all(folder_ / "killed");
   }
