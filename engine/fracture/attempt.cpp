@@ -151,14 +151,18 @@ bool Attempt::retreat() {
   const bool missed = spiral_ || !ended_ || missed_ || any_node(growth_, NodeState::kBlocked);
   if (!(missed || growth_.steered) || history_.empty()) return false;
   if (close_ring()) return true;
-  if (widened_ == std::size(kRetreats)) return false;
-  const Retreat& r = kRetreats[widened_++];
-  while (history_.size() > 1 && history_.back().step > missed_.value_or(steps_) - r.steps) history_.pop_back();
+  const Retreat* r = nullptr;
+  do {
+    if (widened_ == std::size(kRetreats)) return false;
+    r = &kRetreats[widened_++];
+    while (history_.size() > 1 && history_.back().step > missed_.value_or(steps_) - r->steps) history_.pop_back();
+  } while (from_ == std::tuple(history_.back().step, r->range, r->tension));  // would end as the last one did
+  from_ = std::tuple(history_.back().step, r->range, r->tension);
   const Saved saved = history_.back();
   history_.pop_back();  // step() saves it again
   wings_.resize(saved.wings);
   growth_.to_borders = true;
-  growth_.steer_range = r.range, growth_.steer_full = r.full, growth_.tension = r.tension;
+  growth_.steer_range = r->range, growth_.steer_full = r->full, growth_.tension = r->tension;
   steps_ = saved.step;
   go_on(saved.sheet);
   return true;

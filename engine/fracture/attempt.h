@@ -2,6 +2,7 @@
 // Internal to the fracture stage.
 #pragma once
 #include <optional>
+#include <tuple>
 
 #include "engine/fracture/front.h"
 
@@ -37,7 +38,8 @@ class Attempt {
 
   Growth growth_;
   std::vector<Saved> history_;
-  std::size_t widened_ = 0, rings_ = 0;  // retreats of either kind
+  std::size_t widened_ = 0, rings_ = 0;        // retreats of either kind
+  std::tuple<int, Real, int> from_{-1, 0, 0};  // step, steering range and tension of the last retreat
   int level_, steps_ = 0, limit_;
   bool ended_ = false;  // no active node is left
   bool spiral_ = false;

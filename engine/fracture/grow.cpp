@@ -1,5 +1,7 @@
 #include "engine/fracture/grow.h"
 
+#include <algorithm>
+
 #include "engine/fracture/attempt.h"
 #include "engine/fracture/seed.h"
 
@@ -15,7 +17,7 @@ GrowthResult climb_ladder(const TriangleBvh& body, const CrackField& field, cons
   if (!result.reason.empty()) return result;
   Rungs rungs;
   std::size_t asked = 0, spared = 0;
-  for (int level = 0; level < kRungCount; ++level) {
+  for (int level = 0; level < std::min(options.rungs, kRungCount); ++level) {
     std::string& reason = rungs.reason[static_cast<std::size_t>(level)];
     Attempt attempt(body, field, options, level);
     reason = start(attempt.growth());

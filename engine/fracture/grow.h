@@ -28,6 +28,7 @@ struct GrowthOptions {
   Real speed = 0.5;               // the paper's alpha: step in units of h at the seed's stress; clamped to 0.4 .. 0.8
   Real overshoot = 0.15;          // of h: how far past the surface an exited node is placed
   int max_steps = 0;              // 0: 4 x (bounding-box diagonal / edge_length) + 64
+  int rungs = 5;                  // of the ladder to try, from the true field on
   // When given, they take the place of the numbers above. Borrowed: they outlive the growth.
   const ScalarField* propagation_field = nullptr;
   const ScalarField* thickness_field = nullptr;

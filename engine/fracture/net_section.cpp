@@ -73,7 +73,11 @@ Real ligament_strength(const Patches& through, const Patches& arrested, const Gr
 NetSection net_section(const TriangleBvh& body, const CrackField& field, const CrackSheet& arrested,
                        const GrowthOptions& options) {
   NetSection result;
-  result.through = resume_crack(body, ContinuedField(field, arrested, options), arrested, options);
+  // Where the tension does not lead through, bending the sheet towards its seed's plane does not either: the later
+  // rungs cost most of the growth of a goblet's cracks and brought none through.
+  GrowthOptions once = options;
+  once.rungs = 1;
+  result.through = resume_crack(body, ContinuedField(field, arrested, options), arrested, once);
   if (result.through.outcome != GrowthOutcome::kComplete) return result;
   const CrackSheet& sheet = result.through.sheet;
   const Patches through(sheet, body);
