@@ -27,11 +27,13 @@ std::array<Vec3, 64> make_samples() {
 }  // namespace
 
 Real tension_bound(const BoundedBody& body, const BoundedLoad& load) {
-  constexpr Real kMargin = 3, kSlender = 0.16, kNotch = 4;
-  constexpr Real kRotation = 0.25;  // of density (spin diagonal)^2; a disc has 0.1
+  constexpr Real kMargin = 4, kSlender = 0.16, kNotch = 4;
+  // Of density (spin diagonal)^2; a disc has 0.1, a ring about its diameter bends with r R^3 / 4.
+  constexpr Real kRotation = 0.25, kHoop = 0.5;
   const Real t = body.thickness, d = body.diagonal, notch = body.notched ? kNotch : 1;
   const Real bending = notch * load.force / (t * t) * (1 + kSlender * d / t), contact = load.pressure;
-  return kMargin * std::max(bending, contact) + kRotation * load.density * load.spin * load.spin * d * d;
+  return kMargin * std::max(bending, contact) +
+         kRotation * (1 + kHoop * d / t) * load.density * load.spin * load.spin * d * d;
 }
 
 Real solidity(const TriangleBvh& body, const Vec3& point, Real radius) {

@@ -1,6 +1,6 @@
 // How much tension a load on a free body can cause, from above, without a solve: for loads far too light to break it.
-// An estimate calibrated on full solves, not a theorem; tests/step/tension_bound_test.cpp holds it against a thousand
-// random loads on bodies of all kinds.
+// An estimate calibrated on full solves, not a theorem; tests/campaign/load_bounds_test.cpp holds it against a
+// thousand random loads on bodies of all kinds.
 #pragma once
 #include "engine/mesh/bvh.h"
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/load/earlier_loads.h"
 #include "engine/load/surface_load.h"
 #include "engine/rigid/step.h"
 #include "engine/step/solid.h"
@@ -31,6 +32,7 @@ struct Companion {
   std::size_t mesh = kUnrecorded;                  // index into RunRecord::meshes
   std::size_t last_solve = 0;                      // step, for dropping operators
   int failed_solves = 0;                           // on this mesh
+  std::vector<SolvedLoad> solved = {};             // the latest contacts solved for on this mesh, without held loads
   Real last_tension = 0;                           // of the last solve of this mesh, Pa
   std::shared_ptr<const SurfaceField> field = {};  // of the body's mesh, from its last solve
 };

@@ -57,8 +57,11 @@ struct World : RunState {
   std::vector<BodyContact> loads_on(std::size_t i);
   std::vector<bool> acting_loads(std::size_t i) const;
   std::string cannot_break(std::size_t i) const;
-  // Whether contacts of `force` (N) together and `pressure` (Pa) at most cannot break the body.
+  Real needed_tension(std::size_t i) const;  // Pa, for anything to happen
+  Real held_tension(std::size_t i) const;
+  BoundedLoad spin_of(std::size_t i) const;
   bool too_light(std::size_t i, Real force, Real pressure) const;
+  bool too_light(std::size_t i, const std::vector<BodyContact>& loads) const;
   // What is to be done about body i in this step.
   struct Due {
     BodyId id;
@@ -67,13 +70,13 @@ struct World : RunState {
     std::vector<BodyContact> loads;  // when it must
   };
   Due due(std::size_t i);
-  bool too_light(std::size_t i, const std::vector<BodyContact>& loads) const;
 
   // What breaks.
   FractureOptions fracture_options(std::size_t i) const;
   SurfaceLoad pull_on(std::size_t i, std::span<const BodyContact> loads) const;
   void fracture(Due&& due, StepRecord& step);
   void only_solve(const Due& due);
+  void remember(std::size_t i, const EventRecord& event, const SolveRecord& solve);
   // Guided cracks whose time has come, in all that is left of their body.
   void run_guides(StepRecord& step);
   void guide(std::size_t i, std::size_t crack, StepRecord& step);

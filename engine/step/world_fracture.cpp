@@ -73,27 +73,34 @@ std::string World::cannot_break(std::size_t i) const {
 }
 
 // Below the strength no crack starts, below the propagation strength none goes on.
-bool World::too_light(std::size_t i, Real force, Real pressure) const {
+Real World::needed_tension(std::size_t i) const {
   const MaterialFields& fields = roots[companions[i].scene_body].fields;
-  Solid& solid = *companions[i].solid;
-  const Body& body = bodies[i];
-  const Real needed = (solid.partial.empty() ? fields.strength : fields.propagation_strength)->lower();
-  Real tension =
-      tension_bound(solid.bounded(), {force, pressure, body.mass.mass / body.mass.volume, norm(body.angular_velocity)});
+  return (companions[i].solid->partial.empty() ? fields.strength : fields.propagation_strength)->lower();
+}
+
+// What the scene's loads add to contacts, Pa; and what the body's spin is.
+Real World::held_tension(std::size_t i) const {
   const std::vector<bool> acting = acting_loads(i);
-  if (std::find(acting.begin(), acting.end(), true) != acting.end()) tension += companions[i].last_tension;
-  return tension < needed;
+  return std::find(acting.begin(), acting.end(), true) != acting.end() ? companions[i].last_tension : 0;
+}
+
+BoundedLoad World::spin_of(std::size_t i) const {
+  const Body& body = bodies[i];
+  return {0, 0, body.mass.mass / body.mass.volume, norm(body.angular_velocity)};
+}
+
+// Contacts of `force` (N) together and `pressure` (Pa) at most.
+bool World::too_light(std::size_t i, Real force, Real pressure) const {
+  BoundedLoad load = spin_of(i);
+  load.force = force, load.pressure = pressure;
+  return tension_bound(companions[i].solid->bounded(), load) + held_tension(i) < needed_tension(i);
 }
 
 bool World::too_light(std::size_t i, const std::vector<BodyContact>& loads) const {
-  const TriangleBvh& bvh = companions[i].solid->bvh();
-  Real force = 0, pressure = 0;
-  for (const BodyContact& c : loads) {
-    const Real size = norm(c.force);
-    force += size;
-    pressure = std::max(pressure, size / disc(c.patch_radius) / solidity(bvh, c.point, c.patch_radius));
-  }
-  return too_light(i, force, pressure);
+  Solid& solid = *companions[i].solid;
+  const std::vector<SpreadContact> spread_loads = spread(solid.mesh(), loads, solid.twins(), solid.bvh());
+  return tension_bound(solid.bounded(), solid.bvh(), spread_loads, companions[i].solved, spin_of(i)) + held_tension(i) <
+         needed_tension(i);
 }
 
 std::vector<bool> World::acting_loads(std::size_t i) const {
@@ -190,6 +197,7 @@ void World::apply_shapes(std::size_t i, FractureResult& result, EventRecord& eve
                       .mesh = clean_kept ? companion.mesh : Companion::kUnrecorded,
                       .last_solve = companion.last_solve,
                       .failed_solves = clean_kept ? companion.failed_solves : 0,
+                      .solved = clean_kept ? companion.solved : std::vector<SolvedLoad>{},
                       .last_tension = clean_kept ? companion.last_tension : 0,
                       .field = shape.field});
   }
@@ -236,6 +244,18 @@ Elastic elastic_of(const Body& body) {
 
 }  // namespace
 
+// A solve under contacts alone says what later contacts can do at most.
+void World::remember(std::size_t i, const EventRecord& event, const SolveRecord& solve) {
+  constexpr std::size_t kRemembered = 4;
+  Companion& companion = companions[i];
+  companion.last_tension = solve.strongest.stress.value;
+  if (event.applied_loads > 0) return;
+  if (companion.solved.size() == kRemembered) companion.solved.erase(companion.solved.begin());
+  Solid& solid = *companion.solid;
+  companion.solved.push_back({spread(solid.mesh(), event.contacts, solid.twins(), solid.bvh()),
+                              norm(bodies[i].angular_velocity), std::max(Real{0}, companion.last_tension)});
+}
+
 void World::fracture(Due&& due, StepRecord& step) {
   const std::size_t i = index_of(due.id);
   Companion& companion = companions[i];
@@ -251,7 +271,7 @@ void World::fracture(Due&& due, StepRecord& step) {
   event.contacts = std::move(due.loads);
   const SolveRecord& solve = event.result.solves[0];
   if (solve.solved)
-    companion.last_tension = solve.strongest.stress.value;
+    remember(i, event, solve);
   else
     ++companion.failed_solves;
   record.skips += event.result.skips;

@@ -20,14 +20,14 @@ void expect_none_above(const std::vector<BoundResult>& results) {
 TEST(LoadBounds, NoTensionExceedsItsBound) {
   std::vector<BoundBody> bodies = bound_bodies();
   bodies.resize(10);
-  expect_none_above(check_bounds(bodies, 4, 1));
+  expect_none_above(check_bounds(bodies, 8, 1));
 }
 
 TEST(SlowLoadBounds, OfAThousandRandomLoadsNoCrackIsMissed) {
   const std::vector<BoundBody> bodies = bound_bodies();
-  const std::size_t loads = 1000 / bodies.size() + 1;
+  const std::size_t loads = 2 * (1000 / bodies.size() + 1);  // and as many near one of them
   const std::vector<BoundResult> results = check_bounds(bodies, loads, 1000);
-  EXPECT_GE(results.size(), 1000u);
+  EXPECT_GE(results.size(), 2000u);
   expect_none_above(results);
 }
 

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "engine/fracture/initiate.h"
+#include "engine/load/earlier_loads.h"
 #include "engine/load/surface_load.h"
-#include "engine/load/tension_bound.h"
 #include "engine/material/scalar_field.h"
 #include "engine/mesh/shapes.h"
 #include "engine/step/elastic_settings.h"
@@ -56,7 +55,6 @@ void add_shards(const std::string& name, SurfaceMesh mesh, std::vector<BoundBody
 
 struct RandomLoad {
   std::vector<BodyContact> contacts;
-  BoundedLoad bounded;
   Vec3 omega;
 };
 
@@ -72,7 +70,7 @@ RandomLoad random_load(Solid& solid, std::size_t number, Random& random) {
   const SurfaceMesh& mesh = solid.mesh();
   const Real diagonal = solid.diagonal();
   RandomLoad load;
-  load.bounded.density = kDensity;
+  Real force = 0;
   for (std::size_t i = 0; i < 1 + number % 3; ++i) {
     // Half of them at vertices: bodies meet with their edges and corners.
     const std::size_t face = random.next() % mesh.triangle_count();
@@ -83,18 +81,26 @@ RandomLoad random_load(Solid& solid, std::size_t number, Random& random) {
     c.point = at_vertex ? mesh.corner(face, 0) : mesh.centroid(face);
     c.force = (along * random.uniform(0, kLargestFriction) - normal) * random.uniform(0.2, 1);
     c.patch_radius = 0.02 * diagonal * std::exp(random.uniform(0, 2));
-    const Real size = norm(c.force);
-    load.bounded.force += size;
-    const Real area =
-        std::numbers::pi * c.patch_radius * c.patch_radius * solidity(solid.bvh(), c.point, c.patch_radius);
-    load.bounded.pressure = std::max(load.bounded.pressure, size / area);
+    force += norm(c.force);
     load.contacts.push_back(c);
   }
-  if (number % 4 == 3) {  // of a size that matters beside these forces of a newton
-    load.bounded.spin = std::sqrt(load.bounded.force / (kDensity * diagonal * diagonal * diagonal * diagonal));
-    load.omega = random_direction(random) * load.bounded.spin;
-  }
+  if (number % 4 == 3)  // of a size that matters beside these forces of a newton
+    load.omega = random_direction(random) * std::sqrt(force / (kDensity * diagonal * diagonal * diagonal * diagonal));
   return load;
+}
+
+// The contacts a little moved, turned, stronger or weaker, some of them gone, and all in another proportion.
+RandomLoad near(const RandomLoad& load, Solid& solid, Random& random) {
+  RandomLoad out{{}, load.omega * random.uniform(0, 1.5)};
+  const Real all = random.uniform(0.5, 2), moved = random.uniform(0, 0.5), turned = random.uniform(0, 0.3);
+  for (BodyContact c : load.contacts) {
+    if (!out.contacts.empty() && random.uniform() < 0.1) continue;
+    c.point = solid.bvh().closest(c.point + c.patch_radius * moved * random_direction(random)).point;
+    c.force = all * (c.force + norm(c.force) * turned * random_direction(random));
+    c.patch_radius *= random.uniform(0.9, 1.1);
+    out.contacts.push_back(c);
+  }
+  return out;
 }
 
 void check_body(const BoundBody& body, std::uint64_t seed, std::span<BoundResult> out) {
@@ -104,11 +110,16 @@ void check_body(const BoundBody& body, std::uint64_t seed, std::span<BoundResult
   const ElasticBody& elastic = solid.elastic(kMaterial, elastic_options(SceneSolver{}));
   const ScalarFieldPtr one = constant_field(1);
   Random random(seed);
+  RandomLoad before;
+  std::vector<SolvedLoad> solved;
   for (std::size_t k = 0; k < out.size(); ++k) {
     BoundResult& r = out[k];
     r.body = body.name, r.load = k;
-    const RandomLoad random_one = random_load(solid, k, random);
-    r.bound = tension_bound(solid.bounded(), random_one.bounded);
+    if (k % 2 == 0) solved.clear();
+    const RandomLoad random_one = solved.empty() ? random_load(solid, k / 2, random) : near(before, solid, random);
+    const Real spin = norm(random_one.omega);
+    const std::vector<SpreadContact> contacts = spread(*mesh, random_one.contacts, solid.twins(), solid.bvh());
+    r.bound = tension_bound(solid.bounded(), solid.bvh(), contacts, solved, {0, 0, kDensity, spin});
     SurfaceLoad pull;
     pull.patches = contact_patches(*mesh, random_one.contacts, solid.twins(), solid.bvh());
     pull.omega = random_one.omega;
@@ -119,6 +130,9 @@ void check_body(const BoundBody& body, std::uint64_t seed, std::span<BoundResult
     if (!solution.ok) continue;
     const StressState state(elastic, solid.recovery(), solid.bvh(), load, particular, solution);
     r.tension = strongest_point(*mesh, solid.recovery(), state, *one).stress.value;
+
+    solved = {{contacts, spin, std::max(Real{0}, r.tension)}};
+    before = random_one;
   }
 }
 

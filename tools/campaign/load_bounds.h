@@ -25,7 +25,8 @@ struct BoundResult {
 // block: some 20, of a few hundred triangles each.
 std::vector<BoundBody> bound_bodies();
 // `loads` on each body: one to three contacts anywhere, half of them at vertices, of random size, friction up to 0.8
-// and patches from the smallest to a seventh of the diagonal, every fourth with spin. By body, then load; parallel,
+// and patches from the smallest to a seventh of the diagonal, every fourth with spin. Every second is near the one
+// before, as those of a body at rest are, and is bounded by what that one did. By body, then load; parallel,
 // deterministic.
 std::vector<BoundResult> check_bounds(const std::vector<BoundBody>& bodies, std::size_t loads, std::uint64_t seed);
 // A row a body: loads, largest and median of tension over bound; then loads whose tension exceeds their bound.
