@@ -40,7 +40,8 @@ Real solidity(const TriangleBvh& body, const Vec3& point, Real radius) {
   static const std::array<Vec3, 64> samples = make_samples();
   const auto solid =
       std::count_if(samples.begin(), samples.end(), [&](const Vec3& x) { return body.inside(point + radius * x); });
-  return std::clamp(2 * static_cast<Real>(solid) / static_cast<Real>(samples.size()), kLeastSolidity, Real{1});
+  const Real share = std::min(Real{1}, 2 * static_cast<Real>(solid) / static_cast<Real>(samples.size()));
+  return std::max(kLeastSolidity, share * std::sqrt(share));
 }
 
 bool has_reentrant_creases(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twins) {

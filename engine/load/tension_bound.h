@@ -22,15 +22,15 @@ struct BoundedBody {
 // Pa. The worst of what bends a body and what pulls around a contact, times a margin. A free bar under a force in its
 // middle or at its end bends with M up to 0.15 F L, so its stress goes like F L / T^3; a plate under a point like
 // F / T^2; reentrant creases raise either three to four times (a body with a neck); around a contact the surface is
-// pulled by up to its mean pressure, at edges and with friction. Of 3024 solves (tools/campaign/load_bounds.h, three
-// seeds) the largest stress over this is 0.69.
+// pulled by up to its mean pressure, at edges and with friction. Of 2016 solves on 24 bodies and 6048 on their shards
+// (tools/campaign/load_bounds.h) the largest stress over this is 0.71.
 Real tension_bound(const BoundedBody& body, const BoundedLoad& load);
 
-// How much solid bears a contact at `point`: its share of the half ball of the patch's radius (m), from kLeastSolidity
-// to 1. A flat face has 1, the edge of a cube 0.5, its corner 0.25; the thin edge of a shard little, and is torn by
-// what a face would bear. Of 64 fixed points.
+// How well the solid under a contact at `point` bears its pressure: s^1.5 where s is the solid's share of the half ball
+// of the patch's radius (m), at least kLeastSolidity. A flat face has 1, the edge of a cube 0.35, its corner 0.12; the
+// thin edge of a shard little: it bends like s^-2 and is torn by what a face would bear. Of 64 fixed points.
 Real solidity(const TriangleBvh& body, const Vec3& point, Real radius);
-inline constexpr Real kLeastSolidity = 0.05;
+inline constexpr Real kLeastSolidity = 0.0112;  // of s = 0.05
 
 // Edges where the surface turns inward by more than 40 degrees; of meshes with twins (build_twins()).
 bool has_reentrant_creases(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& twins);
