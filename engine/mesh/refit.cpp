@@ -23,6 +23,7 @@ struct Attempt {
   Real tips;   // the same where the attempts before have left poor triangles
   Real merge;  // of RemeshOptions
   Against against;
+  bool pinch = false;  // triangles below the least angle go also where that pinches a thin sheet
 };
 
 constexpr Real kCloseEnough = 5;      // of max_volume_change
@@ -32,9 +33,10 @@ constexpr Real kFewTriangles = 1000;  // a solve of so many is quick, however co
 // few dozen triangles do, when lengths grow quickly away from there.
 constexpr Real kTipGrowth = 0.5;
 constexpr Real kTipAngle = 2;            // of the least angle: what counts as left poor
+constexpr Real kPinchAngle = 1.5;        // of the least angle: what may pinch a sheet; its neighbours get poorer
 constexpr std::size_t kMostPoor = 1000;  // corners; more are no matter of a few places
 
-// What every later solve pays for, finer edges, comes late.
+// What every later solve pays for, finer edges all over, comes last.
 constexpr Attempt kLadder[] = {{"local", 2, 1, 1, 0.02, Against::kAll},
                                {"local, merged 0.1", 2, 1, 1, 0.1, Against::kAngles},
                                {"local, merged 0.3", 2, 1, 1, 0.3, Against::kAngles},
@@ -44,12 +46,15 @@ constexpr Attempt kLadder[] = {{"local", 2, 1, 1, 0.02, Against::kAll},
                                {"slivers", 0, 1, 1, 0.02, Against::kAngles},
                                {"slivers, merged 0.1", 0, 1, 1, 0.1, Against::kAngles},
                                {"slivers, merged 0.5", 0, 1, 1, 0.5, Against::kAngles},
+                               {"local, pinched", 2, 1, 1, 0.3, Against::kAngles, true},
+                               {"slivers, pinched", 0, 1, 1, 0.5, Against::kAngles, true},
                                {"fine", 4, 0.5, 0.5, 0.02, Against::kAll},
                                {"fine, merged 0.3", 4, 0.5, 0.5, 0.3, Against::kAngles},
                                {"fine, tips", 4, 0.5, 1.0 / 16, 0.02, Against::kAngles},
                                {"finer", 4, 0.25, 0.25, 0.02, Against::kAll},
                                {"finer, merged 0.4", 4, 0.25, 0.25, 0.4, Against::kAngles},
                                {"finer, tips", 4, 0.25, 1.0 / 32, 0.02, Against::kAngles},
+                               {"fine, pinched", 4, 0.5, 0.5, 0.3, Against::kAngles, true},
                                {"slivers for the volume", 0, 1, 1, 0.02, Against::kAll}};
 
 class Refit {
@@ -128,6 +133,7 @@ class Refit {
     RemeshOptions o;
     o.edge_length = attempt.finer * options_.edge_length;
     o.merge = attempt.merge, o.keep_volume = true;
+    if (attempt.pinch) o.pinch_below = kPinchAngle * options_.least_angle;
     if (attempt.reach > 0)
       o.locked = lock_good_regions(piece_, size_, attempt.reach * options_.edge_length);
     else

@@ -36,12 +36,12 @@ struct RefitReport {
   Real thin_walls = 0;  // the result's share of area with edges too long for the wall there (ResolutionReport)
 };
 
-// Attempts from the least change to the greatest, until one keeps every promise of the options and is a valid mesh:
-// near poor triangles only; with close features merged; in a wider zone; with much finer edges just where poor
-// triangles are left; slivers alone; with finer edges all over the zone. Otherwise `out` is the piece. Then thin walls,
-// by edge_per_thin_wall. `piece` is closed, 2-manifold and without self-intersections; its lines between faces of
-// different kind or crack id and its creases stay, as remesh() says. Deterministic. Throws InputError for options out
-// of range.
+// Attempts from the cheapest to the dearest, until one keeps every promise of the options and is a valid mesh: near
+// poor triangles only; with close features merged; in a wider zone; with much finer edges just where poor triangles are
+// left; slivers alone; with thin sheets pinched where their rim has such triangles; with finer edges all over the zone.
+// Otherwise `out` is the piece. Then thin walls, by edge_per_thin_wall. `piece` is closed, 2-manifold and without
+// self-intersections; its lines between faces of different kind or crack id and its creases stay, as remesh() says.
+// Deterministic. Throws InputError for options out of range.
 RefitReport refit(const SurfaceMesh& piece, const RefitOptions& options, SurfaceMesh& out);
 
 }  // namespace sherd
