@@ -1,6 +1,7 @@
 #include "engine/mesh/intersections.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/mesh/bvh.h"
 #include "kernels/core/parallel.h"
@@ -126,15 +127,35 @@ bool clearly_apart(const Corners& a, const Corners& b) {
   return true;
 }
 
-// The triangles (o, a1, a2) and (o, b1, b2): a plane through o with each strictly on its side.
+// A plane through an edge of a and perpendicular to a: in one plane, one of these or of b's parts whatever is apart.
+bool edges_part(const Corners& a, const Corners& b) {
+  const auto size = [](const Vec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+  const Vec3 n = cross(a[1] - a[0], a[2] - a[0]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &o = a[k], e = a[(k + 1) % 3] - o, w = a[(k + 2) % 3] - o, d = cross(e, n);
+    const Vec3 v[3] = {b[0] - o, b[1] - o, b[2] - o};
+    const Real high = std::max({0.0, dot(e, d), dot(w, d)});
+    const Real low = std::min({dot(v[0], d), dot(v[1], d), dot(v[2], d)});
+    const Real longest = std::max({size(e), size(w), size(v[0]), size(v[1]), size(v[2])});
+    if (low - high > kMargin * size(d) * longest) return true;
+  }
+  return false;
+}
+
+// The triangles (o, a1, a2) and (o, b1, b2): a plane through o with each strictly on its side. Tried are the one
+// between their middles and those between each edge of one and each of the other: enough for most of what is apart in a
+// plane.
 bool clearly_only_vertex(const Vec3& o, const Vec3& a1, const Vec3& a2, const Vec3& b1, const Vec3& b2) {
   const Vec3 p[4] = {a1 - o, a2 - o, b1 - o, b2 - o};
   const Real l[4] = {norm(p[0]), norm(p[1]), norm(p[2]), norm(p[3])};
   if (!(l[0] > 0 && l[1] > 0 && l[2] > 0 && l[3] > 0)) return false;
-  const Vec3 d = p[2] / l[2] + p[3] / l[3] - p[0] / l[0] - p[1] / l[1];
-  const Real margin = kMargin * norm(d);
-  return dot(p[0], d) < -margin * l[0] && dot(p[1], d) < -margin * l[1] && dot(p[2], d) > margin * l[2] &&
-         dot(p[3], d) > margin * l[3];
+  const Vec3 e[4] = {p[0] / l[0], p[1] / l[1], p[2] / l[2], p[3] / l[3]};
+  const auto parts = [&](const Vec3& d) {
+    const Real margin = kMargin * norm(d);
+    return dot(e[0], d) < -margin && dot(e[1], d) < -margin && dot(e[2], d) > margin && dot(e[3], d) > margin;
+  };
+  return parts(e[2] + e[3] - e[0] - e[1]) || parts(e[2] - e[0]) || parts(e[2] - e[1]) || parts(e[3] - e[0]) ||
+         parts(e[3] - e[1]);
 }
 
 // p and q seen along the edge vw lie in opposite half planes.
@@ -146,7 +167,7 @@ bool clearly_only_edge(const Vec3& v, const Vec3& w, const Vec3& p, const Vec3& 
 }  // namespace
 
 bool triangles_intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  return !clearly_apart(a, b) && disjoint_indices_intersect(a, b);
+  return !clearly_apart(a, b) && !edges_part(a, b) && !edges_part(b, a) && disjoint_indices_intersect(a, b);
 }
 
 bool triangles_intersect(const Triangle& ia, const std::array<Vec3, 3>& a, const Triangle& ib,

@@ -13,25 +13,49 @@
 namespace sherd {
 namespace {
 
+enum class Against : std::uint8_t { kAngles, kAll };  // kAll: of use for a volume that came out wrong, too
+
 // One rung of the ladder.
 struct Attempt {
   const char* name;
-  Real reach;       // of the target length: how far from poor triangles vertices may change
-  Real finer;       // target length over the one asked for
-  Real merge;       // of RemeshOptions
-  bool slivers;     // repair only, no remeshing
-  bool for_angles;  // of use only against angles, not for a volume that came out wrong
+  Real reach;  // of the target length: how far from poor triangles vertices may change; 0: repair of slivers alone
+  Real finer;  // target length over the one asked for
+  Real tips;   // the same where the attempts before have left poor triangles
+  Real merge;  // of RemeshOptions
+  Against against;
+  bool pinch = false;  // triangles below the least angle go also where that pinches a thin sheet
 };
 
-constexpr Real kCloseEnough = 5;  // of max_volume_change
+constexpr Real kCloseEnough = 5;      // of max_volume_change
+constexpr Real kFewTriangles = 1000;  // a solve of so many is quick, however coarse the piece could be
+// Where two lines pass each other closely (the neck of a rim, a thread of solid between two lumps) only edges in
+// keeping with the gap have decent angles, and merging the lines may be impossible: it would tear the solid apart. A
+// few dozen triangles do, when lengths grow quickly away from there.
+constexpr Real kTipGrowth = 0.5;
+constexpr Real kTipAngle = 2;            // of the least angle: what counts as left poor
+constexpr Real kPinchAngle = 1.5;        // of the least angle: what may pinch a sheet; its neighbours get poorer
+constexpr std::size_t kMostPoor = 1000;  // corners; more are no matter of a few places
 
-constexpr Attempt kLadder[] = {
-    {"local", 2, 1, 0.02, false, false},           {"local, merged 0.1", 2, 1, 0.1, false, true},
-    {"local, merged 0.3", 2, 1, 0.3, false, true}, {"wide", 6, 1, 0.1, false, false},
-    {"fine", 4, 0.5, 0.02, false, false},          {"fine, merged 0.3", 4, 0.5, 0.3, false, true},
-    {"finer", 4, 0.25, 0.02, false, false},        {"finer, merged 0.4", 4, 0.25, 0.4, false, true},
-    {"slivers", 0, 1, 0.02, true, false},          {"slivers, merged 0.1", 0, 1, 0.1, true, true},
-    {"slivers, merged 0.5", 0, 1, 0.5, true, true}};
+// What every later solve pays for, finer edges all over, comes last.
+constexpr Attempt kLadder[] = {{"local", 2, 1, 1, 0.02, Against::kAll},
+                               {"local, merged 0.1", 2, 1, 1, 0.1, Against::kAngles},
+                               {"local, merged 0.3", 2, 1, 1, 0.3, Against::kAngles},
+                               {"wide", 6, 1, 1, 0.1, Against::kAll},
+                               {"tips", 2, 1, 1.0 / 8, 0.02, Against::kAngles},
+                               {"finer tips", 2, 1, 1.0 / 32, 0.02, Against::kAngles},
+                               {"slivers", 0, 1, 1, 0.02, Against::kAngles},
+                               {"slivers, merged 0.1", 0, 1, 1, 0.1, Against::kAngles},
+                               {"slivers, merged 0.5", 0, 1, 1, 0.5, Against::kAngles},
+                               {"local, pinched", 2, 1, 1, 0.3, Against::kAngles, true},
+                               {"slivers, pinched", 0, 1, 1, 0.5, Against::kAngles, true},
+                               {"fine", 4, 0.5, 0.5, 0.02, Against::kAll},
+                               {"fine, merged 0.3", 4, 0.5, 0.5, 0.3, Against::kAngles},
+                               {"fine, tips", 4, 0.5, 1.0 / 16, 0.02, Against::kAngles},
+                               {"finer", 4, 0.25, 0.25, 0.02, Against::kAll},
+                               {"finer, merged 0.4", 4, 0.25, 0.25, 0.4, Against::kAngles},
+                               {"finer, tips", 4, 0.25, 1.0 / 32, 0.02, Against::kAngles},
+                               {"fine, pinched", 4, 0.5, 0.5, 0.3, Against::kAngles, true},
+                               {"slivers for the volume", 0, 1, 1, 0.02, Against::kAll}};
 
 class Refit {
  public:
@@ -56,21 +80,45 @@ class Refit {
     bool found = false;
     bool angles_hold = false;  // an attempt failed by its volume alone: merging features more would not help
     for (const Attempt& attempt : kLadder) {
-      if (attempt.for_angles && angles_hold) continue;
+      if (attempt.against == Against::kAngles && angles_hold) continue;
       // Finer edges cost every later solve more than such a change is worth.
       if (attempt.finer < 1 && found && least_change_ <= kCloseEnough * options_.max_volume_change * volume_) return;
+      const RemeshOptions o = options_of(attempt);
+      if (attempt.tips < 1 && !pay_for(attempt, o)) continue;
       SurfaceMesh mesh;
-      const RemeshReport r = remesh(piece_, options_of(attempt), mesh);
-      ++report_.attempts;
+      const RemeshReport r = remesh(piece_, o, mesh);
+      if (++report_.attempts == 1)
+        triangles_left_ = options_.most_refinement * std::max(kFewTriangles, static_cast<Real>(mesh.triangle_count()));
       angles_hold = r.status == RemeshStatus::kOk && r.min_angle >= options_.least_angle;
+      if (r.status == RemeshStatus::kOk && !angles_hold) remember_poor_triangles(mesh);
       const std::string wrong = judge(r, mesh, attempt.finer);
       const Real change = std::abs(r.volume_change) * volume_;
       if (wrong.empty() && (!found || change < least_change_)) adopt(attempt, r, std::move(mesh)), found = true;
       if (found && least_change_ <= options_.max_volume_change * volume_) return;
-      if (wrong.empty()) continue;
-      report_.reason += fmt::format("{}{}: {}", report_.reason.empty() ? "" : "; ", attempt.name, wrong);
+      if (!wrong.empty()) note(attempt, wrong);
     }
     if (!found) refuse();
+  }
+
+  // Of the triangles that attempts with finer edges may make; false when they do not suffice.
+  bool pay_for(const Attempt& attempt, const RemeshOptions& o) {
+    const Real triangles = expected_triangles(piece_, o.size, o.locked);
+    if (triangles <= triangles_left_) {
+      triangles_left_ -= triangles;
+      return true;
+    }
+    note(attempt, fmt::format("some {:.2g} triangles would be too many", triangles));
+    return false;
+  }
+
+  void note(const Attempt& attempt, const std::string& wrong) {
+    report_.reason += fmt::format("{}{}: {}", report_.reason.empty() ? "" : "; ", attempt.name, wrong);
+  }
+
+  void remember_poor_triangles(const SurfaceMesh& mesh) {
+    for (std::size_t t = 0; t < mesh.triangle_count() && poor_.size() < kMostPoor; ++t)
+      if (angle_of(mesh, t) < kTipAngle * options_.least_angle)
+        for (int k = 0; k < 3; ++k) poor_.push_back(mesh.corner(t, k));
   }
 
   void adopt(const Attempt& attempt, const RemeshReport& r, SurfaceMesh&& mesh) {
@@ -85,13 +133,24 @@ class Refit {
     RemeshOptions o;
     o.edge_length = attempt.finer * options_.edge_length;
     o.merge = attempt.merge, o.keep_volume = true;
-    if (attempt.slivers) o.iterations = 0;
-    if (options_.edge_per_thickness > 0 || attempt.finer < 1) {
-      o.size = size_;
-      for (Real& s : o.size) s *= attempt.finer;
-    }
-    if (attempt.reach > 0) o.locked = lock_good_regions(piece_, size_, attempt.reach * options_.edge_length);
+    if (attempt.pinch) o.pinch_below = kPinchAngle * options_.least_angle;
+    if (attempt.reach > 0)
+      o.locked = lock_good_regions(piece_, size_, attempt.reach * options_.edge_length);
+    else
+      o.iterations = 0;
+    if (options_.edge_per_thickness > 0 || attempt.tips < 1) o.size = lengths_of(attempt);
     return o;
+  }
+
+  std::vector<Real> lengths_of(const Attempt& attempt) const {
+    std::vector<Real> size = size_;
+    for (std::size_t v = 0; v < size.size(); ++v) {
+      size[v] *= attempt.finer;
+      if (attempt.tips == attempt.finer) continue;
+      for (const Vec3& p : poor_)
+        size[v] = std::min(size[v], attempt.tips * size_[v] + kTipGrowth * distance(piece_.vertices[v], p));
+    }
+    return size;
   }
 
   std::string judge(const RemeshReport& r, const SurfaceMesh& mesh, Real finer) const {
@@ -110,19 +169,24 @@ class Refit {
     out_ = piece_;
     Real least = 180;
     for (std::size_t t = 0; t < piece_.triangle_count(); ++t) {
-      const Real angle = smallest_angle({piece_.corner(t, 0), piece_.corner(t, 1), piece_.corner(t, 2)}) / kDegree;
+      const Real angle = angle_of(piece_, t);
       least = std::min(least, angle), report_.below_1 += angle < 1, report_.below_15 += angle < 15;
     }
     report_.min_angle = piece_.triangles.empty() ? 0 : least;
   }
 
-  static constexpr Real kDegree = std::numbers::pi / 180;
+  static Real angle_of(const SurfaceMesh& mesh, std::size_t t) {  // degrees
+    return smallest_angle({mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)}) * (180 / std::numbers::pi);
+  }
+
   const SurfaceMesh& piece_;
   const RefitOptions& options_;
   SurfaceMesh& out_;
   Real volume_, largest_change_ = 0;  // m^3, of what is accepted at all
   Real least_change_ = 0;             // of what was adopted
-  std::vector<Real> size_;
+  Real triangles_left_ = 0;           // of those that attempts with finer edges may make
+  std::vector<Real> size_;            // as asked for, one a vertex of the piece
+  std::vector<Vec3> poor_;            // corners of triangles that attempts left poor
   RefitReport report_;
 };
 

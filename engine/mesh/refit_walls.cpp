@@ -18,17 +18,6 @@ constexpr int kPasses = 3;      // thickness is measured again on the finer mesh
 constexpr Real kGrowth = 0.5;   // SizingOptions: 0.3 takes a quarter more triangles for the same warnings
 constexpr Real kSlack[] = {1, 1.3};  // on the edges, tried in turn until the triangles suffice
 
-// Triangles of the target lengths: the integral of dA / (sqrt(3) / 4 h^2).
-Real triangles_of(const SurfaceMesh& mesh, const std::vector<Real>& size) {
-  Real sum = 0;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    const Triangle& v = mesh.triangles[t];
-    const Real h = (size[v[0]] + size[v[1]] + size[v[2]]) / 3;
-    sum += 0.5 * norm(mesh.area_normal2(t)) / (0.25 * std::sqrt(3.0) * h * h);
-  }
-  return sum;
-}
-
 class WallGrading {
  public:
   WallGrading(SurfaceMesh& mesh, const RefitOptions& options, Real volume, RefitReport& report)
@@ -64,7 +53,7 @@ class WallGrading {
       if (options_.edge_per_thickness > 0) per_thickness = std::min(per_thickness, options_.edge_per_thickness);
       o.size = sizing_field(mesh_, thickness.vertex,
                             {.edge_length = o.edge_length, .edge_per_thickness = per_thickness, .growth = kGrowth});
-      enough = triangles_of(mesh_, o.size) <= most_;
+      enough = expected_triangles(mesh_, o.size) <= most_;
       if (enough) break;
     }
     if (!enough) return false;

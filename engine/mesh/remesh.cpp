@@ -22,6 +22,8 @@ void check(const SurfaceMesh& in, const RemeshOptions& o) {
   if (o.iterations < 0) throw InputError(fmt::format("remesh: iterations is {}; give 0 or more", o.iterations));
   if (!(o.merge >= 0 && o.merge <= 0.5))
     throw InputError(fmt::format("remesh: merge is {}; give a part of the target length from 0 to 0.5", o.merge));
+  if (!(o.pinch_below >= 0))
+    throw InputError(fmt::format("remesh: pinch_below is {}; give 0 (off) or degrees", o.pinch_below));
   if (!o.locked.empty() && o.locked.size() != in.vertex_count())
     throw InputError(fmt::format("remesh: {} lock flags for {} vertices; give none or one each", o.locked.size(),
                                  in.vertex_count()));

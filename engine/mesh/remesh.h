@@ -17,6 +17,9 @@ struct RemeshOptions {
   // Of the target length: where features (fixed vertices, different lines) closer than this force faces below 20
   // degrees, they are merged, as long as no thin sheet is pinched and faces stay within it of the input. At most 0.5.
   Real merge = 0.02;
+  // Degrees: faces with a smaller angle are merged away even where that pinches a thin sheet. A wall that tapers to a
+  // narrow rim has nothing else to give: its two lines meet there then, and it ends in an edge instead.
+  Real pinch_below = 0;
   // Vertices leave the input surface by a part of the facets' own error, so that new facets cut no volume off curved
   // places, and walls and curved places give what features have cost. Without, vertices lie on the input surface.
   bool keep_volume = false;

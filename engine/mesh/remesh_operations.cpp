@@ -158,8 +158,15 @@ bool Remesher::may_collapse(std::uint32_t h, bool repairing) const {
   if (locked(a)) return false;
   if (features_.role[a] == VertexRole::kFree) return true;
   if (features_.role[a] == VertexRole::kLine && mesh_.line[h] == features_.line[a]) return true;
-  // Features closer than anything the target length can show: only to remove a sliver, never across a thin sheet.
-  return repairing && distance(mesh_.position[a], mesh_.position[b]) < merge_ * edge_target(h) && !pinches_a_sheet(h);
+  // Features closer than anything the target length can show: only to remove a sliver, and across a thin sheet only one
+  // that must go.
+  if (!repairing || !(distance(mesh_.position[a], mesh_.position[b]) < merge_ * edge_target(h))) return false;
+  return edge_angle(h) < options_.pinch_below * kDegree || !pinches_a_sheet(h);
+}
+
+// The smallest angle of the two faces at an edge.
+Real Remesher::edge_angle(std::uint32_t h) const {
+  return std::min(smallest_angle(mesh_.corners(h / 3)), smallest_angle(mesh_.corners(mesh_.twin[h] / 3)));
 }
 
 bool Remesher::try_collapse(std::uint32_t h, bool repairing) {
@@ -168,7 +175,7 @@ bool Remesher::try_collapse(std::uint32_t h, bool repairing) {
   collapse_patch(h, before_, after_);
   const Real limit = 4.0 / 3 * edge_target(h);
   Real old_longest = 0, new_longest = 0;
-  Real old_angle = std::min(smallest_angle(mesh_.corners(h / 3)), smallest_angle(mesh_.corners(mesh_.twin[h] / 3)));
+  Real old_angle = edge_angle(h);
   Real new_angle = std::numbers::pi;
   replaced_.assign({h / 3, mesh_.twin[h] / 3});
   for (std::size_t i = 0; i < after_.size(); ++i) {

@@ -69,6 +69,7 @@ class Remesher {
 
   bool may_collapse(std::uint32_t h, bool repairing) const;
   bool pinches_a_sheet(std::uint32_t h) const;
+  Real edge_angle(std::uint32_t h) const;
   void ring(std::uint32_t v, Patch& patch) const;
   void collapse_patch(std::uint32_t h, Patch& before, Patch& after) const;
   bool turns_little(const Patch& before, const Patch& after, bool repairing) const;

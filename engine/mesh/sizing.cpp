@@ -66,6 +66,20 @@ std::vector<Real> sizing_field(const SurfaceMesh& mesh, const std::vector<Real>&
   return size;
 }
 
+Real expected_triangles(const SurfaceMesh& mesh, const std::vector<Real>& size,
+                        const std::vector<std::uint8_t>& locked) {
+  SHERD_CHECK(size.size() == mesh.vertex_count(), "{} target lengths for {} vertices", size.size(),
+              mesh.vertex_count());
+  Real sum = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const Triangle& v = mesh.triangles[t];
+    const bool stays = !locked.empty() && locked[v[0]] != 0 && locked[v[1]] != 0 && locked[v[2]] != 0;
+    const Real h = (size[v[0]] + size[v[1]] + size[v[2]]) / 3;
+    sum += stays ? 1 : 0.5 * norm(mesh.area_normal2(t)) / (0.25 * std::sqrt(3.0) * h * h);
+  }
+  return sum;
+}
+
 Real finest_target(const SurfaceMesh& mesh, const SizingOptions& options) {
   check(options);
   if (!(options.edge_per_thickness > 0) || mesh.vertex_count() == 0) return options.edge_length;

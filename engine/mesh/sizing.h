@@ -20,6 +20,11 @@ struct SizingOptions {
 std::vector<Real> sizing_field(const SurfaceMesh& mesh, const std::vector<Real>& thickness,
                                const SizingOptions& options);
 
+// About how many triangles remesh() makes for such target lengths, one a vertex: the integral of dA / (sqrt(3) / 4
+// h^2), and one for each face between vertices that `locked` (empty, or one entry a vertex) names.
+Real expected_triangles(const SurfaceMesh& mesh, const std::vector<Real>& size,
+                        const std::vector<std::uint8_t>& locked = {});
+
 // The smallest target of the mesh's own wall thickness, metres; edge_length when off or where nothing asks for less.
 Real finest_target(const SurfaceMesh& mesh, const SizingOptions& options);
 

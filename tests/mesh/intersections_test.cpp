@@ -133,6 +133,56 @@ TEST(TriangleIntersection, SharedEdgeCountsOnlyAFlatFold) {
   EXPECT_TRUE(triangles_intersect(ia, a, {2, 1, 0}, {a[2], a[1], a[0]}));
 }
 
+// Triangles of small integers in the plane z = x + 2 y: pairs of one plane, which touch often. Their projections along
+// z meet as they do, and integers decide that exactly: closed triangles are apart when an edge of one has the other
+// strictly outside; those with one vertex in common meet in more when an edge of one from there lies between those of
+// the other.
+TEST(TriangleIntersection, PairsOfOnePlaneAgreeWithIntegerArithmetic) {
+  using Point = std::array<long, 2>;
+  const auto turn = [](const Point& a, const Point& b, const Point& c) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+  };
+  Random random(9);
+  const auto point = [&] {
+    const auto coordinate = [&] { return static_cast<long>(random.uniform(-6, 7)); };
+    const long x = coordinate();
+    return Point{x, coordinate()};
+  };
+  using Flat = std::array<Point, 3>;
+  const auto triangle = [&](const Flat& t) {
+    Corners c;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto x = static_cast<Real>(t[k][0]), y = static_cast<Real>(t[k][1]);
+      c[k] = {x, y, x + 2 * y};
+    }
+    return c;
+  };
+  const auto has_outside = [&](const Flat& t, const Flat& u) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (std::all_of(u.begin(), u.end(), [&](const Point& p) { return turn(t[k], t[(k + 1) % 3], p) < 0; }))
+        return true;
+    return false;
+  };
+  const auto between = [&](const Flat& t, const Point& p) {
+    return turn(t[0], t[1], p) >= 0 && turn(t[0], p, t[2]) >= 0;
+  };
+  int met[2] = {0, 0}, apart[2] = {0, 0};
+  for (int i = 0; i < 20000; ++i) {
+    Flat a{point(), point(), point()}, b{point(), point(), point()};
+    const bool shared = i % 2 == 1;
+    if (shared) b[0] = a[0];
+    if (turn(a[0], a[1], a[2]) < 0) std::swap(a[1], a[2]);
+    if (turn(b[0], b[1], b[2]) < 0) std::swap(b[1], b[2]);
+    if (turn(a[0], a[1], a[2]) == 0 || turn(b[0], b[1], b[2]) == 0) continue;
+    const bool expected = shared ? between(a, b[1]) || between(a, b[2]) || between(b, a[1]) || between(b, a[2])
+                                 : !has_outside(a, b) && !has_outside(b, a);
+    ++(expected ? met : apart)[shared ? 1 : 0];
+    const bool found = triangles_intersect({0, 1, 2}, triangle(a), {shared ? 0u : 3u, 4, 5}, triangle(b));
+    ASSERT_EQ(found, expected) << i;
+  }
+  for (int k = 0; k < 2; ++k) EXPECT_GT(std::min(met[k], apart[k]), 1000);  // both answers are asked for
+}
+
 TEST(SelfIntersections, GeneratedSolidsHaveNone) {
   EXPECT_EQ(count_self_intersections(make_sphere(1, 0.15)), 0u);
   EXPECT_EQ(count_self_intersections(make_box({1, 2, 3}, 0.2)), 0u);

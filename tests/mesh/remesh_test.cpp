@@ -278,6 +278,7 @@ TEST(Remesh, OpenMeshIsRefusedAndBadOptionsThrow) {
   EXPECT_THROW(remesh(in, {.edge_length = 1, .feature_angle = -1}, out), InputError);
   EXPECT_THROW(remesh(in, {.edge_length = 1, .iterations = -1}, out), InputError);
   EXPECT_THROW(remesh(in, {.edge_length = 1, .merge = 0.6}, out), InputError);
+  EXPECT_THROW(remesh(in, {.edge_length = 1, .pinch_below = -1}, out), InputError);
   EXPECT_THROW(remesh(in, {.edge_length = 1, .locked = {1, 0}}, out), InputError);
   in.triangles.pop_back();
   in.faces = {};

@@ -54,6 +54,22 @@ TEST(Sizing, TargetsObeyTheThicknessTheBoundsAndTheGrowth) {
   EXPECT_DOUBLE_EQ(sizing_field(mesh, thickness, options)[thin], 0.02);  // finest * edge_length
 }
 
+// Edges come out between 0.8 and 1.33 of the target, so the number of triangles between 1 / 1.33^2 and 1 / 0.8^2 of the
+// expected one.
+TEST(Sizing, RemeshingMakesAboutAsManyTrianglesAsExpected) {
+  const SurfaceMesh in = make_sphere(0.5, 0.05);
+  for (const Real edge : {0.15, 0.1, 0.04}) {
+    const std::vector<Real> size(in.vertex_count(), edge);
+    SurfaceMesh out;
+    ASSERT_EQ(remesh(in, {.edge_length = edge}, out).status, RemeshStatus::kOk);
+    const Real share = static_cast<Real>(out.triangle_count()) / expected_triangles(in, size);
+    EXPECT_GT(share, 1 / (1.34 * 1.34));
+    EXPECT_LT(share, 1 / (0.8 * 0.8));
+    const std::vector<std::uint8_t> locked(in.vertex_count(), 1);
+    EXPECT_EQ(expected_triangles(in, size, locked), static_cast<Real>(in.triangle_count()));
+  }
+}
+
 TEST(Sizing, HalvedEdgesAreShortAndThePolyhedronIsTheSame) {
   const SurfaceMesh in = make_box({1, 0.1, 0.3}, 1);
   const SurfaceMesh out = with_edges_halved(in, 0.07);
