@@ -73,11 +73,7 @@ Real ligament_strength(const Patches& through, const Patches& arrested, const Gr
 NetSection net_section(const TriangleBvh& body, const CrackField& field, const CrackSheet& arrested,
                        const GrowthOptions& options) {
   NetSection result;
-  // The last rungs cost most of the growth of a goblet's cracks and brought none through; the third ends the crack of a
-  // twisted stick.
-  GrowthOptions most = options;
-  most.rungs = 3;
-  result.through = resume_crack(body, ContinuedField(field, arrested, options), arrested, most);
+  result.through = resume_crack(body, ContinuedField(field, arrested, options), arrested, options);
   if (result.through.outcome != GrowthOutcome::kComplete) return result;
   const CrackSheet& sheet = result.through.sheet;
   const Patches through(sheet, body);

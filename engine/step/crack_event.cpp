@@ -133,7 +133,11 @@ void CrackEvent::break_ligament(Piece& piece, const CrackField& field, Grown& gr
   const bool went = guarded(reason, [&] {
     const Stopwatch watch(result_.seconds.grow, "net section");
     const Obstacles obstacles = obstacles_in(piece, left_out);
-    net = net_section(piece.tree(), field, grown.result.sheet, growth_options(piece, record, obstacles, through));
+    GrowthOptions options = growth_options(piece, record, obstacles, through);
+    // The third rung ends the crack of a twisted stick. With the fine edges of a thin wall the later ones cost most of
+    // the growth of a goblet's cracks and brought none through.
+    options.rungs = record.edge_length < solid_.edge_length() ? 1 : 3;
+    net = net_section(piece.tree(), field, grown.result.sheet, options);
   });
   result_.seconds.grow -= result_.seconds.cut + result_.seconds.front - others;
   if (!went || !net.complete) return;
