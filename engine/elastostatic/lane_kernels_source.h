@@ -8,6 +8,7 @@ namespace sherd {
 namespace {
 
 constexpr std::size_t kWidth = SHERD_LANE_WIDTH;
+constexpr int kFreedoms = kPanelFreedoms;
 using V [[gnu::vector_size(8 * SHERD_LANE_WIDTH)]] = double;
 
 inline V load(const double* p) {
@@ -42,10 +43,10 @@ inline void multiply(const V k[6], const double* v, V out[3]) {
   out[2] = k[4] * v[0] + k[3] * v[1] + k[2] * v[2];
 }
 
-// M u = sum over nodes (grad N_a n^T - n grad N_a^T) u_a: the panel's blocks go to its ten nodes.
+// M u = sum over freedoms (grad N_a n^T - n grad N_a^T) u_a: the panel's blocks go to its freedoms.
 template <int N>
-inline void scatter(const LanePanel& f, const V kernel[][6], const V angle[10], const double (*table_s)[N],
-                    const double (*table_t)[N], const std::uint32_t* local, double* nodes) {
+inline void scatter(const LanePanel& f, const V kernel[][6], const V angle[kFreedoms], const double (*table_s)[N],
+                    const double (*table_t)[N], const std::uint32_t* local, double* freedoms) {
   V ks[3][N], kt[3][N], kn[3][N];
   for (int b = 0; b < N; ++b) {
     V s[3], t[3], n[3];
@@ -53,14 +54,14 @@ inline void scatter(const LanePanel& f, const V kernel[][6], const V angle[10], 
     for (int i = 0; i < 3; ++i) ks[i][b] = s[i], kt[i][b] = t[i], kn[i][b] = n[i];
   }
   for (int i = 0; i < 3; ++i)
-    for (int a = 0; a < 10; ++a) {
+    for (int a = 0; a < kFreedoms; ++a) {
       V p{}, vs{}, vt{};
       for (int b = 0; b < N; ++b) {
         const double s = table_s[a][b], t = table_t[a][b];
         p += ks[i][b] * s + kt[i][b] * t;
         vs += kn[i][b] * s, vt += kn[i][b] * t;
       }
-      double* block = nodes + kLaneBlock * local[a] + 3 * kLanes * static_cast<std::size_t>(i);
+      double* block = freedoms + kLaneBlock * local[a] + 3 * kLanes * static_cast<std::size_t>(i);
       for (int j = 0; j < 3; ++j) {
         V v = load(block + kLanes * static_cast<std::size_t>(j)) + p * f.normal[j] - vs * f.gradient_s[j] -
               vt * f.gradient_t[j];
@@ -73,47 +74,47 @@ inline void scatter(const LanePanel& f, const V kernel[][6], const V angle[10], 
 template <int N>
 inline void points(const LanePanel& f, const double (*y)[3], const double (*table_s)[N], const double (*table_t)[N],
                    const double (*shape)[N], const LaneConstants& c, const double* x, const double* mask,
-                   const std::uint32_t* local, double* nodes, double* total) {
+                   const std::uint32_t* local, double* freedoms, double* total) {
   for (std::size_t h = 0; h < kLanes; h += kWidth) {
     const V target[3] = {load(x + h), load(x + kLanes + h), load(x + 2 * kLanes + h)};
     const V w = mask ? load(mask + h) * f.area : V{} + f.area;
-    V kernel[N][6], value[N], angle[10], sum = load(total + h);
+    V kernel[N][6], value[N], angle[kFreedoms], sum = load(total + h);
     for (int q = 0; q < N; ++q) {
       point_values(target, y[q], f.normal, w, c, kernel[q], value[q]);
     }
-    for (int a = 0; a < 10; ++a) {
+    for (int a = 0; a < kFreedoms; ++a) {
       angle[a] = V{};
       for (int q = 0; q < N; ++q) angle[a] += value[q] * shape[a][q];
-      sum += angle[a];
+      if (a < 3) sum += angle[a];  // the vertices' shape functions add up to 1
     }
     store(total + h, sum);
-    scatter<N>(f, kernel, angle, table_s, table_t, local, nodes + h);
+    scatter<N>(f, kernel, angle, table_s, table_t, local, freedoms + h);
   }
 }
 
 void three_points(const LanePanel& f, const LaneTables& t, const LaneConstants& c, const double* x,
-                  const std::uint32_t* local, double* nodes, double* total) {
-  points<3>(f, f.three, t.three_s, t.three_t, t.three_shape, c, x, nullptr, local, nodes, total);
+                  const std::uint32_t* local, double* freedoms, double* total) {
+  points<3>(f, f.three, t.three_s, t.three_t, t.three_shape, c, x, nullptr, local, freedoms, total);
 }
 
 void six_points(const LanePanel& f, const LaneTables& t, const LaneConstants& c, const double* x, const double* mask,
-                const std::uint32_t* local, double* nodes, double* total) {
-  points<6>(f, f.six, t.six_s, t.six_t, t.six_shape, c, x, mask, local, nodes, total);
+                const std::uint32_t* local, double* freedoms, double* total) {
+  points<6>(f, f.six, t.six_s, t.six_t, t.six_shape, c, x, mask, local, freedoms, total);
 }
 
-void moments(const LanePanel& f, const LaneTables& t, const LaneMoments& m, const std::uint32_t* local, double* nodes,
-             double* total) {
+void moments(const LanePanel& f, const LaneTables& t, const LaneMoments& m, const std::uint32_t* local,
+             double* freedoms, double* total) {
   for (std::size_t h = 0; h < kLanes; h += kWidth) {
-    V kernel[6][6], moment[10], angle[10];
+    V kernel[6][6], moment[10], angle[kFreedoms];
     for (int b = 0; b < 6; ++b)
       for (int k = 0; k < 6; ++k) kernel[b][k] = load(m.kernel[b][k] + h);
     for (int b = 0; b < 10; ++b) moment[b] = load(m.angle[b] + h);
     store(total + h, load(total + h) + moment[0]);
-    for (int a = 0; a < 10; ++a) {
+    for (int a = 0; a < kFreedoms; ++a) {
       angle[a] = V{};
       for (int b = 0; b < 10; ++b) angle[a] += moment[b] * t.monomial_shape[a][b];
     }
-    scatter<6>(f, kernel, angle, t.monomial_s, t.monomial_t, local, nodes + h);
+    scatter<6>(f, kernel, angle, t.monomial_s, t.monomial_t, local, freedoms + h);
   }
 }
 
@@ -121,56 +122,42 @@ inline void add_block(double* out, const double* in, double w) {
   for (std::size_t i = 0; i < kLaneBlock; i += kWidth) store(out + i, load(out + i) + load(in + i) * w);
 }
 
-// Block times 3x3 matrix, three rows at once, added.
-inline void add_product(double* out, const double* in, const double* m) {
-  for (std::size_t h = 0; h < kLanes; h += kWidth)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const V a = load(in + 3 * kLanes * i + h), b = load(in + 3 * kLanes * i + kLanes + h),
-              c = load(in + 3 * kLanes * i + 2 * kLanes + h);
+// What the freedoms load a corner's gradient with, [row][column]: the sums over its terms of x and y times the blocks,
+// plus those of z times the blocks and the frames.
+inline void load_corner(const LaneGather& g, const LaneGather::Corner& c, const double* freedoms, V gx[9], V gy[9]) {
+  for (std::size_t i = 0; i < 9; i += 3) {
+    V sx[3]{}, sy[3]{}, sz[3]{};
+    for (std::uint32_t e = c.first_term; e < c.last_term; ++e) {
+      const LaneGather::Term& t = g.terms[e];
+      const double* in = freedoms + kLaneBlock * t.freedom + kLanes * i;
       for (std::size_t j = 0; j < 3; ++j) {
-        double* o = out + 3 * kLanes * i + kLanes * j + h;
-        store(o, load(o) + a * m[j] + b * m[3 + j] + c * m[6 + j]);
+        const V v = load(in + kLanes * j);
+        sx[j] += v * t.x, sy[j] += v * t.y, sz[j] += v * t.z;
       }
     }
+    const double *fx = c.frame_x, *fy = c.frame_y;
+    for (std::size_t j = 0; j < 3; ++j) {
+      gx[i + j] = sx[j] + sz[0] * fx[j] + sz[1] * fx[3 + j] + sz[2] * fx[6 + j];
+      gy[i + j] = sy[j] + sz[0] * fy[j] + sz[1] * fy[3 + j] + sz[2] * fy[6 + j];
+    }
+  }
 }
 
-void gather(const LaneGather& g, const double* nodes, double* corners, double* vertices) {
-  for (std::size_t i = 0; i < 2 * kLaneBlock * g.corner_count; ++i) corners[i] = 0;
-  for (std::size_t k = 0; k < g.node_count; ++k) {
-    const LaneGather::Node& node = g.nodes[k];
-    const double* in = nodes + kLaneBlock * k;
-    if (node.vertex != 0xFFFFFFFFu) {
-      add_block(vertices + kLaneBlock * node.vertex, in, 1);
-      continue;
-    }
-    for (std::uint32_t e = node.first_entry; e < node.last_entry; ++e)
-      add_block(vertices + kLaneBlock * g.entries[e].vertex, in, g.entries[e].weight);
-    for (std::uint32_t e = node.first_term; e < node.last_term; ++e) {
-      const LaneGather::Term& t = g.terms[e];
-      const LaneGather::Corner& c = g.corners[t.corner];
-      double *gx = corners + 2 * kLaneBlock * t.corner, *gy = gx + kLaneBlock;
-      if (t.z == 0) {
-        if (t.x != 0) add_block(gx, in, t.x);
-        if (t.y != 0) add_block(gy, in, t.y);
-        continue;
+void gather(const LaneGather& g, const double* freedoms, double* vertices) {
+  for (std::size_t k = 0; k < g.entry_count; ++k)
+    add_block(vertices + kLaneBlock * g.entries[k].vertex, freedoms + kLaneBlock * g.entries[k].freedom,
+              g.entries[k].weight);
+  for (std::size_t k = 0; k < g.corner_count; ++k)
+    for (std::size_t h = 0; h < kLanes; h += kWidth) {
+      const LaneGather::Corner& c = g.corners[k];
+      V gx[9], gy[9];
+      load_corner(g, c, freedoms + h, gx, gy);
+      for (std::uint32_t e = c.first_gradient; e < c.last_gradient; ++e) {
+        const LaneGather::Gradient& r = g.gradients[e];
+        double* out = vertices + kLaneBlock * r.vertex + h;
+        for (std::size_t i = 0; i < 9; ++i) store(out + kLanes * i, load(out + kLanes * i) + gx[i] * r.x + gy[i] * r.y);
       }
-      double mx[9], my[9];
-      for (int i = 0; i < 9; ++i) {
-        mx[i] = t.z * c.frame_x[i] + (i % 4 == 0 ? t.x : 0);
-        my[i] = t.z * c.frame_y[i] + (i % 4 == 0 ? t.y : 0);
-      }
-      add_product(gx, in, mx), add_product(gy, in, my);
     }
-  }
-  for (std::size_t k = 0; k < g.corner_count; ++k) {
-    const double *gx = corners + 2 * kLaneBlock * k, *gy = gx + kLaneBlock;
-    for (std::uint32_t e = g.corners[k].first; e < g.corners[k].last; ++e) {
-      const LaneGather::Gradient& r = g.gradients[e];
-      double* out = vertices + kLaneBlock * r.vertex;
-      for (std::size_t i = 0; i < kLaneBlock; i += kWidth)
-        store(out + i, load(out + i) + load(gx + i) * r.x + load(gy + i) * r.y);
-    }
-  }
 }
 
 void kelvin_sum(const LaneSources& s, double ratio, double least, const double* x, double* u) {
@@ -220,8 +207,8 @@ void gradient_sum(const LaneElements& s, double kelvin, double ratio, double lea
   }
 }
 
-void add_weighted(const double* in, const double* weight, const std::uint32_t* local, double* nodes) {
-  for (int a = 0; a < 10; ++a) add_block(nodes + kLaneBlock * local[a], in, weight[a]);
+void add_weighted(const double* in, const double* weight, const std::uint32_t* local, double* freedoms) {
+  for (int a = 0; a < kFreedoms; ++a) add_block(freedoms + kLaneBlock * local[a], in, weight[a]);
 }
 
 }  // namespace

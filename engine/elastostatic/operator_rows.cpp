@@ -30,7 +30,7 @@ struct OperatorRows::Impl {
 };
 
 struct OperatorRows::Workspace {
-  std::vector<double> node, corner, vertex;
+  std::vector<double> freedom, vertex;
   double x[3 * kLanes], total[kLanes];
 };
 
@@ -73,21 +73,20 @@ std::span<const double> OperatorRows::evaluate(const TargetGroup& g, Workspace& 
   w.vertex.assign(kLaneBlock * vertices, 0);
   std::fill_n(w.total, kLanes, 0);
   for (const SourceBlock& block : impl_->blocks) {
-    w.node.assign(kLaneBlock * block.nodes.size(), 0);
+    w.freedom.assign(kLaneBlock * block.freedoms, 0);
     for (std::size_t i = 0; i < block.panels.size(); ++i) {
       const std::uint32_t t = block.panels[i];
       Real nearest = 1e300;
       for (std::size_t k = 0; k < g.count; ++k) nearest = std::min(nearest, distance2(g.x[k], b.centroid[t]));
       const std::uint32_t* local = block.local[i].data();
       if (nearest > b.middle2[t])
-        kernels.three_points(block.lane_panels[i], lane_tables(), c, w.x, local, w.node.data(), w.total);
+        kernels.three_points(block.lane_panels[i], lane_tables(), c, w.x, local, w.freedom.data(), w.total);
       else if (nearest > b.near2[t])
-        kernels.six_points(block.lane_panels[i], lane_tables(), c, w.x, nullptr, local, w.node.data(), w.total);
+        kernels.six_points(block.lane_panels[i], lane_tables(), c, w.x, nullptr, local, w.freedom.data(), w.total);
       else
-        add_near_panel(b, g, t, block.lane_panels[i], local, c, kernels, w.node.data(), w.total);
+        add_near_panel(b, g, t, block.lane_panels[i], local, c, kernels, w.freedom.data(), w.total);
     }
-    w.corner.resize(2 * kLaneBlock * block.corners.size());
-    kernels.gather(block.gather(), w.node.data(), w.corner.data(), w.vertex.data());
+    kernels.gather(block.gather(), w.freedom.data(), w.vertex.data());
   }
   subtract_own(impl_->reconstruction, g, w);
   return w.vertex;

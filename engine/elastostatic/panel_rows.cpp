@@ -47,23 +47,36 @@ std::array<cubic::Polynomial, N> point_basis(const std::array<TrianglePoint, N>&
   return out;
 }
 
+// A shape function's part of tables: its weights over the points of a rule.
+template <std::size_t N>
+void point_weights(const cubic::Polynomial& shape, const std::array<cubic::Polynomial, N>& points, double (&s)[N],
+                   double (&t)[N], double (&value)[N]) {
+  const cubic::Polynomial ds = cubic::derivative(shape, 0), dt = cubic::derivative(shape, 1);
+  for (std::size_t q = 0; q < N; ++q) {
+    s[q] = mean_product(ds, points[q]), t[q] = mean_product(dt, points[q]);
+    value[q] = mean_product(shape, points[q]);
+  }
+}
+
 LaneTables make_tables() {
+  static_assert(kPanelFreedoms == cubic::kFreedoms);
   LaneTables t{};
   const auto three = point_basis(kGauss3);
   const auto six = point_basis(kGauss6);
-  for (std::size_t a = 0; a < cubic::kNodes; ++a) {
-    const auto &shape = cubic::kShape[a], ds = cubic::derivative(shape, 0), dt = cubic::derivative(shape, 1);
+  for (std::size_t a = 0; a < kPanelFreedoms; ++a) {
+    const auto &shape = cubic::kHermite[a], ds = cubic::derivative(shape, 0), dt = cubic::derivative(shape, 1);
     for (std::size_t m = 0; m < kQuadraticMonomials; ++m) t.monomial_s[a][m] = ds[m], t.monomial_t[a][m] = dt[m];
     for (std::size_t m = 0; m < kCubicMonomials; ++m) t.monomial_shape[a][m] = shape[m];
-    for (std::size_t q = 0; q < 3; ++q) {
-      t.three_s[a][q] = mean_product(ds, three[q]), t.three_t[a][q] = mean_product(dt, three[q]);
-      t.three_shape[a][q] = mean_product(shape, three[q]);
-    }
-    for (std::size_t q = 0; q < 6; ++q) {
-      t.six_s[a][q] = mean_product(ds, six[q]), t.six_t[a][q] = mean_product(dt, six[q]);
-      t.six_shape[a][q] = mean_product(shape, six[q]);
-    }
+    point_weights(shape, three, t.three_s[a], t.three_t[a], t.three_shape[a]);
+    point_weights(shape, six, t.six_s[a], t.six_t[a], t.six_shape[a]);
   }
+  return t;
+}
+
+NodeTables make_node_tables() {
+  NodeTables t{};
+  const auto three = point_basis(kGauss3);
+  for (std::size_t a = 0; a < cubic::kNodes; ++a) point_weights(cubic::kShape[a], three, t.s[a], t.t[a], t.shape[a]);
   return t;
 }
 
@@ -87,6 +100,11 @@ const LaneTables& lane_tables() {
   return tables;
 }
 
+const NodeTables& node_tables() {
+  static const NodeTables tables = make_node_tables();
+  return tables;
+}
+
 LaneConstants lane_constants(Real nu) {
   LaneConstants c;
   c.two = 1 / (8 * std::numbers::pi * (1 - nu));
@@ -96,7 +114,7 @@ LaneConstants lane_constants(Real nu) {
 }
 
 void add_near_panel(const Boundary& b, const TargetGroup& g, std::uint32_t t, const LanePanel& panel,
-                    const std::uint32_t* local, const LaneConstants& c, const LaneKernels& kernels, double* nodes,
+                    const std::uint32_t* local, const LaneConstants& c, const LaneKernels& kernels, double* freedoms,
                     double* total) {
   const PanelFrame& f = b.panels[t];
   LaneMoments moments{};
@@ -116,8 +134,8 @@ void add_near_panel(const Boundary& b, const TargetGroup& g, std::uint32_t t, co
         (g.vertex[k] != kNone && (corner[0] == g.vertex[k] || corner[1] == g.vertex[k] || corner[2] == g.vertex[k]));
     closed_form(f, g.x[k], on ? Side::kOnSurface : Side::kAway, c, k, moments);
   }
-  kernels.moments(panel, lane_tables(), moments, local, nodes, total);
-  if (others) kernels.six_points(panel, lane_tables(), c, x, mask, local, nodes, total);
+  kernels.moments(panel, lane_tables(), moments, local, freedoms, total);
+  if (others) kernels.six_points(panel, lane_tables(), c, x, mask, local, freedoms, total);
 }
 
 }  // namespace sherd
