@@ -93,9 +93,9 @@ struct LaneKernels {
                   double* total);
   // freedoms -> vertices (added to).
   void (*gather)(const LaneGather&, const double* freedoms, double* vertices);
-  // u (3 kLanes) += sum over sources of ((3 - 4 nu) f + r (r f) / l^2) / l, `ratio` = 3 - 4 nu; sources whose squared
-  // distance is not above `least` add nothing.
-  void (*kelvin_sum)(const LaneSources&, double ratio, double least, const double* x, double* u);
+  // u (3 kLanes) += weight (a number a lane) times the sum over sources of ((3 - 4 nu) f + r (r f) / l^2) / l, `ratio`
+  // = 3 - 4 nu; sources whose squared distance is not above `least` add nothing.
+  void (*kelvin_sum)(const LaneSources&, double ratio, double least, const double* x, const double* weight, double* u);
   // gradient (9 kLanes, [i][k] = u_i,k) += sum over the elements' points; kelvin = 1/(16 pi mu (1 - nu)), the rest as
   // in kelvin_sum.
   void (*gradient_sum)(const LaneElements&, double kelvin, double ratio, double least, const double* x,

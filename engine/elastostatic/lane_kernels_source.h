@@ -174,19 +174,20 @@ void gather(const LaneGather& g, const double* freedoms, double* vertices) {
     }
 }
 
-void kelvin_sum(const LaneSources& s, double ratio, double least, const double* x, double* u) {
+void kelvin_sum(const LaneSources& s, double ratio, double least, const double* x, const double* weight, double* u) {
   for (std::size_t h = 0; h < kLanes; h += kWidth) {
-    const V x0 = load(x + h), x1 = load(x + kLanes + h), x2 = load(x + 2 * kLanes + h);
-    V u0 = load(u + h), u1 = load(u + kLanes + h), u2 = load(u + 2 * kLanes + h);
+    const V x0 = load(x + h), x1 = load(x + kLanes + h), x2 = load(x + 2 * kLanes + h), w = load(weight + h);
+    V u0{}, u1{}, u2{};
     for (std::size_t i = 0; i < s.count; ++i) {
       const V r0 = x0 - s.x[i], r1 = x1 - s.y[i], r2 = x2 - s.z[i];
-      const V l2 = r0 * r0 + r1 * r1 + r2 * r2;
-      const V inverse = inverse_root_above(l2, least);
-      const V radial = (r0 * s.fx[i] + r1 * s.fy[i] + r2 * s.fz[i]) * inverse * inverse * inverse,
+      const V inverse = inverse_root_above(r0 * r0 + r1 * r1 + r2 * r2, least);
+      const V radial = (r0 * s.fx[i] + r1 * s.fy[i] + r2 * s.fz[i]) * (inverse * inverse) * inverse,
               direct = inverse * ratio;
-      u0 += direct * s.fx[i] + radial * r0, u1 += direct * s.fy[i] + radial * r1, u2 += direct * s.fz[i] + radial * r2;
+      u0 += direct * s.fx[i], u1 += direct * s.fy[i], u2 += direct * s.fz[i];
+      u0 += radial * r0, u1 += radial * r1, u2 += radial * r2;
     }
-    store(u + h, u0), store(u + kLanes + h, u1), store(u + 2 * kLanes + h, u2);
+    store(u + h, load(u + h) + w * u0), store(u + kLanes + h, load(u + kLanes + h) + w * u1);
+    store(u + 2 * kLanes + h, load(u + 2 * kLanes + h) + w * u2);
   }
 }
 

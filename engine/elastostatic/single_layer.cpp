@@ -77,29 +77,78 @@ std::array<TrianglePoint, 28> make_quarters() {
   return out;
 }
 
+// Where point forces of one panel are, and how its corners and its density's coefficients make them.
+template <std::size_t N>
+struct RuleTable {
+  double corner[3][N], density[kQuadraticMonomials][N];
+
+  explicit RuleTable(const std::array<TrianglePoint, N>& rule) {
+    for (std::size_t i = 0; i < N; ++i) {
+      const TrianglePoint& g = rule[i];
+      corner[0][i] = g.a, corner[1][i] = g.b, corner[2][i] = g.c;
+      const Real m[kQuadraticMonomials] = {1, g.b, g.c, g.b * g.b, g.b * g.c, g.c * g.c};
+      for (std::size_t k = 0; k < kQuadraticMonomials; ++k) density[k][i] = g.weight * m[k];
+    }
+  }
+};
+
 // Point forces of one panel, on the stack.
 template <std::size_t N>
 struct FewForces {
   double value[6][N];
 
-  FewForces(const PanelFrame& f, const std::array<TrianglePoint, N>& rule, const Density& q) {
-    for (std::size_t i = 0; i < N; ++i) {
-      const TrianglePoint& g = rule[i];
-      const Vec3 y = f.vertex[0] * g.a + f.vertex[1] * g.b + f.vertex[2] * g.c,
-                 t = at(q, g.b, g.c) * (g.weight * f.area);
-      for (int k = 0; k < 3; ++k) value[k][i] = y[k], value[3 + k][i] = t[k];
+  FewForces(const PanelFrame& f, const RuleTable<N>& rule, const Density& q) {
+    for (int j = 0; j < 3; ++j) {
+      const Real v0 = f.vertex[0][j], v1 = f.vertex[1][j], v2 = f.vertex[2][j];
+      for (std::size_t i = 0; i < N; ++i)
+        value[j][i] = v0 * rule.corner[0][i] + v1 * rule.corner[1][i] + v2 * rule.corner[2][i];
+      Real c[kQuadraticMonomials];
+      for (std::size_t k = 0; k < kQuadraticMonomials; ++k) c[k] = q[k][j] * f.area;
+      for (std::size_t i = 0; i < N; ++i) {
+        Real sum = 0;
+        for (std::size_t k = 0; k < kQuadraticMonomials; ++k) sum += c[k] * rule.density[k][i];
+        value[3 + j][i] = sum;
+      }
     }
   }
   LaneSources all() const { return {value[0], value[1], value[2], value[3], value[4], value[5], N}; }
 };
 
-// Eight targets, coordinates one after another, and what is summed at them.
+// Eight targets, coordinates one after another, those beyond `count` repeating the first, and what is summed at them.
 struct Lanes {
-  double x[3 * kLanes] = {}, u[3 * kLanes] = {};
+  std::size_t count;
+  double x[3 * kLanes], u[3 * kLanes] = {};
+  Vec3 centre;
+  Real radius = 0;  // they lie within this distance of the centre
+  Box box;
 
-  void kelvin(const LaneSources& s, Real ratio, Real least2) { lane_kernels().kelvin_sum(s, ratio, least2, x, u); }
-  Vec3 at(std::size_t k) const { return {u[k], u[kLanes + k], u[2 * kLanes + k]}; }
+  Lanes(const Vec3Column& points, std::span<const std::uint32_t> of) : count(of.size()) {
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      const Vec3 p = points[of[k < count ? k : 0]];
+      box.grow(p);
+      for (std::size_t j = 0; j < 3; ++j) x[j * kLanes + k] = p[static_cast<int>(j)];
+    }
+    centre = box.centre();
+    for (std::size_t k = 0; k < count; ++k) radius = std::max(radius, distance(target(k), centre));
+  }
+  Vec3 target(std::size_t k) const { return {x[k], x[kLanes + k], x[2 * kLanes + k]}; }
+  Vec3 sum(std::size_t k) const { return {u[k], u[kLanes + k], u[2 * kLanes + k]}; }
+  void add(std::size_t k, const Vec3& v) { u[k] += v.x, u[kLanes + k] += v.y, u[2 * kLanes + k] += v.z; }
 };
+
+// One for the lanes that a description serves, else zero.
+struct LaneMask {
+  double weight[kLanes];
+  bool any = false;
+
+  void set(std::size_t k, bool serves) { weight[k] = serves ? 1 : 0, any |= serves; }
+};
+
+constexpr LaneMask everywhere(double weight) {
+  LaneMask m{};
+  for (double& w : m.weight) w = weight;
+  return m;
+}
 
 // The layer with everything that does not depend on the target computed once: closed form near the target, seven points
 // on quarters of a panel, then on panels, three points far away.
@@ -110,7 +159,9 @@ struct Layer {
   PointForces middle, far;  // seven and three a panel
   Vec3Column centroid;
   std::vector<Real> near2, quarters2, middle2;  // squared reach of each description, m^2
+  std::vector<Real> reach;                      // of the three points: root of middle2, m
   Real least2 = 1e300;                          // a target this near a Gauss point is that point (of its panel), m^2
+  Elastic material;
 
   void add(const PanelFrame& f, const Density& q, bool is_constant, const QuadratureOptions& o) {
     panel.push_back(f), density.push_back(q), constant.push_back(is_constant);
@@ -119,31 +170,39 @@ struct Layer {
     least2 = std::min(least2, 1e-12 * f.area);
     // Displacements of constants, unlike their gradients, are within 1.4e-5 from two edges on (design notes, section
     // 2).
-    const Real reach = is_constant ? std::max(o.closed_form - 1, 0.0) : o.closed_form;
-    const Real closed = is_constant ? reach : kQuarters * reach;
-    near2.push_back(closed * closed * f.longest2), quarters2.push_back(reach * reach * f.longest2);
-    middle2.push_back(o.gauss7 * o.gauss7 * f.longest2);
+    const Real exact = is_constant ? std::max(o.closed_form - 1, 0.0) : o.closed_form;
+    const Real closed = is_constant ? exact : kQuarters * exact;
+    near2.push_back(closed * closed * f.longest2), quarters2.push_back(exact * exact * f.longest2);
+    middle2.push_back(o.gauss7 * o.gauss7 * f.longest2), reach.push_back(std::sqrt(middle2.back()));
   }
-  Vec3 closed_form(std::size_t i, const Vec3& x, const Elastic& m) const {
+  // All sums are without kelvin().
+  Vec3 closed_form(std::size_t i, const Vec3& x) const {
     const Density& q = density[i];
+    const Real ratio = 3 - 4 * material.nu;
     if (constant[i]) {
       PanelValues v;
       integrate_panel(panel[i], x, Side::kAway, v);
-      return (q[0] * ((3 - 4 * m.nu) * v.inverse) + v.dyad * q[0]) * m.kelvin();
+      return q[0] * (ratio * v.inverse) + v.dyad * q[0];
     }
     PanelMoments v;
     integrate_panel_moments(panel[i], x, Side::kAway, v);
     Vec3 u;
-    for (std::size_t k = 0; k < q.size(); ++k) u += q[k] * ((3 - 4 * m.nu) * v.inverse[k]) + v.dyad[k] * q[k];
-    return u * m.kelvin();
+    for (std::size_t k = 0; k < q.size(); ++k) u += q[k] * (ratio * v.inverse[k]) + v.dyad[k] * q[k];
+    return u;
   }
-  // The three-point sum over all panels, but for kelvin().
-  void far_sum(const Elastic& m, Lanes& lanes) const { lanes.kelvin(far.all(), 3 - 4 * m.nu, least2); }
-  // The same by the fast multipole method, for all targets, m.
-  Vec3Column far_sums(const Vec3Column& x, const Elastic& m) const {
+  void add_points(const LaneSources& s, const LaneMask& mask, Lanes& lanes) const {
+    lane_kernels().kelvin_sum(s, 3 - 4 * material.nu, least2, lanes.x, mask.weight, lanes.u);
+  }
+  // The three-point sum over panels [begin, end).
+  void add_far(std::size_t begin, std::size_t end, Lanes& lanes) const {
+    static constexpr LaneMask kAll = everywhere(1);
+    if (begin < end) add_points(far.part(3 * begin, 3 * (end - begin)), kAll, lanes);
+  }
+  // The three-point sum over all panels by the fast multipole method, for all targets.
+  Vec3Column far_sums(const Vec3Column& x) const {
     fmm::PlanOptions o;
     o.tolerance = kFastTolerance, o.arithmetic = fmm::Arithmetic::kMixed;
-    const fmm::Plan plan(fmm::PairSum::kKelvinValue, {(3 - 4 * m.nu) * m.kelvin(), m.kelvin(), 0, 0, 0},
+    const fmm::Plan plan(fmm::PairSum::kKelvinValue, {3 - 4 * material.nu, 1, 0, 0, 0},
                          {far.position, x, nullptr, nullptr}, o);
     std::vector<double> strengths = far.force.x, value(3 * x.size());
     strengths.insert(strengths.end(), far.force.y.begin(), far.force.y.end());
@@ -153,50 +212,52 @@ struct Layer {
     for (std::size_t i = 0; i < x.size(); ++i) out.set(i, {value[i], value[x.size() + i], value[2 * x.size() + i]});
     return out;
   }
-  // What panels nearer than three points allow add to that at the first `count` targets.
-  void correct(std::span<const std::uint32_t> panels, std::size_t count, const std::array<Vec3, kLanes>& x,
-               const Elastic& m, std::array<Vec3, kLanes>& u) const {
-    static const std::array<TrianglePoint, 28> quarters = make_quarters();
-    const Real ratio = 3 - 4 * m.nu;
-    std::array<Real, kLanes> d2{};
-    Vec3 centre;
-    for (const Vec3& p : x) centre += p / static_cast<Real>(kLanes);
-    Real radius = 0;
-    for (const Vec3& p : x) radius = std::max(radius, distance(p, centre));
-    for (const std::uint32_t i : panels) {
-      const Real reach = std::sqrt(middle2[i]) + radius;
-      if (distance2(centre, centroid[i]) > reach * reach) continue;
-      Real nearest = 1e300;
-      bool by_middle = false, by_quarters = false;
-      for (std::size_t k = 0; k < count; ++k) {
-        d2[k] = distance2(x[k], centroid[i]);
-        nearest = std::min(nearest, d2[k]);
-        by_middle |= d2[k] > quarters2[i] && d2[k] <= middle2[i];
-        by_quarters |= d2[k] > near2[i] && d2[k] <= quarters2[i];
-      }
-      if (nearest > middle2[i]) continue;
-      Lanes three, seven, fine;
-      for (std::size_t k = 0; k < kLanes; ++k)
-        for (std::size_t j = 0; j < 3; ++j) three.x[j * kLanes + k] = x[k < count ? k : 0][static_cast<int>(j)];
-      std::copy_n(three.x, 3 * kLanes, seven.x), std::copy_n(three.x, 3 * kLanes, fine.x);
-      three.kelvin(far.part(3 * i, 3), ratio, least2);
-      if (by_middle) seven.kelvin(middle.part(7 * i, 7), ratio, least2);
-      if (by_quarters) {
-        fine.kelvin(FewForces(panel[i], quarters, density[i]).all(), ratio, least2);
-      }
-      for (std::size_t k = 0; k < count; ++k) {
-        if (d2[k] > middle2[i]) continue;
-        u[k] -= three.at(k) * m.kelvin();
-        if (d2[k] > quarters2[i])
-          u[k] += seven.at(k) * m.kelvin();
-        else if (d2[k] > near2[i])
-          u[k] += fine.at(k) * m.kelvin();
-        else
-          u[k] += closed_form(i, x[k], m);
-      }
+  bool is_far(std::size_t i, const Lanes& lanes) const {
+    const Real d = reach[i] + lanes.radius;
+    return distance2(lanes.centre, centroid[i]) > d * d;
+  }
+  // A panel that some targets see by more than three points. `three_known`: the sums have its three points already.
+  void add_near(std::size_t i, bool three_known, Lanes& lanes) const {
+    static const RuleTable<28> quarters(make_quarters());
+    LaneMask three, seven, fine, closed;
+    const Vec3 c = centroid[i];
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      const Real d2 = distance2(lanes.target(k), c);
+      three.set(k, d2 > middle2[i]);
+      seven.set(k, d2 > quarters2[i] && d2 <= middle2[i]);
+      fine.set(k, d2 > near2[i] && d2 <= quarters2[i]);
+      closed.set(k, d2 <= near2[i]);
     }
+    if (three_known)
+      for (double& w : three.weight) w -= 1;
+    if (three_known ? seven.any || fine.any || closed.any : three.any) add_points(far.part(3 * i, 3), three, lanes);
+    if (seven.any) add_points(middle.part(7 * i, 7), seven, lanes);
+    if (fine.any) add_points(FewForces(panel[i], quarters, density[i]).all(), fine, lanes);
+    if (!closed.any) return;
+    for (std::size_t k = 0; k < lanes.count; ++k)
+      if (closed.weight[k] > 0) lanes.add(k, closed_form(i, lanes.target(k)));
   }
 };
+
+// The panels that carry the load, in order along a curve, so that those far from a target are runs.
+Layer make_layer(const Boundary& b, const Load& load, const ParticularSolution& particular, const Elastic& m,
+                 const QuadratureOptions& options) {
+  const std::size_t contacts = load.panels.size();
+  const bool everywhere_loaded = !particular.zero() || !load.face_traction.empty() || !load.quadratic_traction.empty();
+  std::vector<PanelFrame> frames;
+  Vec3Column centroid;
+  for (const auto& c : load.panels.corners) frames.push_back(make_panel(c[0], c[1], c[2]));
+  if (everywhere_loaded) frames.insert(frames.end(), b.panels.begin(), b.panels.end());
+  for (const PanelFrame& f : frames) centroid.push_back(f.centroid());
+  Layer layer;
+  layer.material = m;
+  for (const std::uint32_t i : along_curve(centroid))
+    if (i < contacts)
+      layer.add(frames[i], {load.panels.traction[i]}, true, options);
+    else
+      layer.add(frames[i], traction_polynomial(b, load, particular, i - contacts), false, options);
+  return layer;
+}
 
 }  // namespace
 
@@ -217,32 +278,27 @@ Density traction_polynomial(const Boundary& b, const Load& load, const Particula
 
 Vec3Column load_potential(const Boundary& b, const Load& load, const ParticularSolution& particular, const Elastic& m,
                           const QuadratureOptions& options, const Vec3Column& points) {
-  Layer layer;
-  for (std::size_t i = 0; i < load.panels.size(); ++i) {
-    const auto& c = load.panels.corners[i];
-    layer.add(make_panel(c[0], c[1], c[2]), {load.panels.traction[i]}, true, options);
-  }
-  if (!particular.zero() || !load.face_traction.empty() || !load.quadratic_traction.empty())
-    for (std::size_t t = 0; t < b.panels.size(); ++t)
-      layer.add(b.panels[t], traction_polynomial(b, load, particular, t), false, options);
+  const Layer layer = make_layer(b, load, particular, m, options);
   const bool fast = static_cast<double>(layer.far.position.size()) * static_cast<double>(points.size()) > kFastPairs;
-  Vec3Column potential = fast ? layer.far_sums(points, m) : Vec3Column(points.size());
+  Vec3Column potential = fast ? layer.far_sums(points) : Vec3Column(points.size());
   const PanelSearch search(layer.centroid, layer.middle2);
   const std::vector<std::uint32_t> order = along_curve(points);  // eight targets near each other share their panels
   parallel_for((points.size() + kLanes - 1) / kLanes, 4, [&](std::size_t group) {
-    std::array<Vec3, kLanes> x, u;
     const std::size_t first = group * kLanes, count = std::min(kLanes, points.size() - first);
-    Lanes lanes;
-    Box at;
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      x[k] = points[order[first + (k < count ? k : 0)]];
-      at.grow(x[k]);
-      for (std::size_t j = 0; j < 3; ++j) lanes.x[j * kLanes + k] = x[k][static_cast<int>(j)];
-    }
-    if (!fast) layer.far_sum(m, lanes);
-    for (std::size_t k = 0; k < count; ++k) u[k] = fast ? potential[order[first + k]] : lanes.at(k) * m.kelvin();
-    search.visit(at, [&](std::size_t block) { layer.correct(search.block(block), count, x, m, u); });
-    for (std::size_t k = 0; k < count; ++k) potential.set(order[first + k], u[k]);
+    Lanes lanes(points, {order.data() + first, count});
+    if (fast)
+      for (std::size_t k = 0; k < count; ++k) lanes.add(k, potential[order[first + k]]);
+    std::size_t next = 0;  // panels before it are in the sums
+    search.visit(lanes.box, [&](std::size_t block) {
+      for (const std::uint32_t i : search.block(block)) {
+        if (layer.is_far(i, lanes)) continue;
+        if (!fast) layer.add_far(next, i, lanes);
+        layer.add_near(i, fast, lanes);
+        next = i + 1;
+      }
+    });
+    if (!fast) layer.add_far(next, layer.panel.size(), lanes);
+    for (std::size_t k = 0; k < count; ++k) potential.set(order[first + k], lanes.sum(k) * m.kelvin());
   });
   return potential;
 }
