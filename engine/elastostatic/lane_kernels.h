@@ -7,6 +7,8 @@
 
 namespace sherd {
 
+struct PanelFrame;
+
 inline constexpr std::size_t kLanes = 8;
 
 // A panel as the loops see it. Units m, m^2 for the area, 1/m for the gradients of the coordinates s and t.
@@ -91,6 +93,11 @@ struct LaneKernels {
                      const std::uint32_t* local, double* freedoms, double* total);
   void (*moments)(const LanePanel&, const LaneTables&, const LaneMoments&, const std::uint32_t* local, double* freedoms,
                   double* total);
+  // Closed forms (kernels/quadrature/moments.h) times the constants for the lanes with `wanted` 1, zero in the others;
+  // `on` is 1 for targets on the panel. Lanes that the one-by-one form must serve (slender panels, targets close to an
+  // edge) stay wanted and zero, the others become 0.
+  void (*panel_moments)(const PanelFrame&, const LaneConstants&, const double* x, const double* on, double* wanted,
+                        LaneMoments&);
   // freedoms -> vertices (added to).
   void (*gather)(const LaneGather&, const double* freedoms, double* vertices);
   // u (3 kLanes) += weight (a number a lane) times the sum over sources of ((3 - 4 nu) f + r (r f) / l^2) / l, `ratio`

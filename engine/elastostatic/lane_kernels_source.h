@@ -39,6 +39,14 @@ inline V inverse_root_above(V a, double least) {
 }
 #endif
 
+}  // namespace
+}  // namespace sherd
+
+#include "engine/elastostatic/lane_moments_source.h"
+
+namespace sherd {
+namespace {
+
 // Kernel (order xx, yy, zz, yz, xz, xy) and double layer of a point at the targets x, times w.
 inline void point_values(const V x[3], const double* y, const double* n, V w, const LaneConstants& c, V kernel[6],
                          V& angle) {
@@ -227,7 +235,7 @@ void add_weighted(const double* in, const double* weight, const std::uint32_t* l
 }  // namespace
 
 extern const LaneKernels SHERD_LANE_KERNELS;
-const LaneKernels SHERD_LANE_KERNELS = {three_points, six_points,   moments,     gather,
-                                        kelvin_sum,   gradient_sum, add_weighted};
+const LaneKernels SHERD_LANE_KERNELS = {three_points, six_points, moments,      panel_moments,
+                                        gather,       kelvin_sum, gradient_sum, add_weighted};
 
 }  // namespace sherd

@@ -113,27 +113,41 @@ LaneConstants lane_constants(Real nu) {
   return c;
 }
 
+void closed_forms(const PanelFrame& f, const std::array<Vec3, kLanes>& targets, const double* on, double* wanted,
+                  const LaneConstants& c, const LaneKernels& kernels, LaneMoments& out) {
+  double x[3 * kLanes];
+  for (std::size_t k = 0; k < kLanes; ++k)
+    for (std::size_t i = 0; i < 3; ++i) x[i * kLanes + k] = targets[k][static_cast<int>(i)];
+  kernels.panel_moments(f, c, x, on, wanted, out);
+  for (std::size_t k = 0; k < kLanes; ++k)
+    if (wanted[k] > 0) closed_form(f, targets[k], on[k] > 0 ? Side::kOnSurface : Side::kAway, c, k, out);
+}
+
 void add_near_panel(const Boundary& b, const TargetGroup& g, std::uint32_t t, const LanePanel& panel,
                     const std::uint32_t* local, const LaneConstants& c, const LaneKernels& kernels, double* freedoms,
                     double* total) {
   const PanelFrame& f = b.panels[t];
-  LaneMoments moments{};
-  double x[3 * kLanes], mask[kLanes];
+  LaneMoments moments;
+  double x[3 * kLanes], mask[kLanes], near[kLanes], on[kLanes];
+  std::array<Vec3, kLanes> targets;
   bool others = false;
   const Vec3 away = f.vertex[0] + f.normal * (100 * std::sqrt(f.longest2));
+  const Triangle& corner = b.mesh.triangles[t];
   for (std::size_t k = 0; k < kLanes; ++k) {
-    const bool used = k < g.count, near = used && distance2(g.x[k], b.centroid[t]) <= b.near2[t];
-    mask[k] = used && !near ? 1 : 0;
+    const bool used = k < g.count;
+    targets[k] = g.x[used ? k : 0];
+    near[k] = used && distance2(g.x[k], b.centroid[t]) <= b.near2[t] ? 1 : 0;
+    mask[k] = used && near[k] == 0 ? 1 : 0;
     others = others || mask[k] > 0;
     // A masked lane must not meet a source point: zero times infinity.
     for (int i = 0; i < 3; ++i) x[static_cast<std::size_t>(i) * kLanes + k] = mask[k] > 0 ? g.x[k][i] : away[i];
-    if (!near) continue;
-    const Triangle& corner = b.mesh.triangles[t];
-    const bool on =
-        g.panel[k] == t ||
-        (g.vertex[k] != kNone && (corner[0] == g.vertex[k] || corner[1] == g.vertex[k] || corner[2] == g.vertex[k]));
-    closed_form(f, g.x[k], on ? Side::kOnSurface : Side::kAway, c, k, moments);
+    on[k] =
+        used && (g.panel[k] == t || (g.vertex[k] != kNone && (corner[0] == g.vertex[k] || corner[1] == g.vertex[k] ||
+                                                              corner[2] == g.vertex[k])))
+            ? 1
+            : 0;
   }
+  closed_forms(f, targets, on, near, c, kernels, moments);
   kernels.moments(panel, lane_tables(), moments, local, freedoms, total);
   if (others) kernels.six_points(panel, lane_tables(), c, x, mask, local, freedoms, total);
 }
