@@ -113,14 +113,12 @@ LaneConstants lane_constants(Real nu) {
   return c;
 }
 
-void closed_forms(const PanelFrame& f, const std::array<Vec3, kLanes>& targets, const double* on, double* wanted,
-                  const LaneConstants& c, const LaneKernels& kernels, LaneMoments& out) {
-  double x[3 * kLanes];
-  for (std::size_t k = 0; k < kLanes; ++k)
-    for (std::size_t i = 0; i < 3; ++i) x[i * kLanes + k] = targets[k][static_cast<int>(i)];
+void closed_forms(const PanelFrame& f, const double* x, const double* on, double* wanted, const LaneConstants& c,
+                  const LaneKernels& kernels, LaneMoments& out) {
   kernels.panel_moments(f, c, x, on, wanted, out);
   for (std::size_t k = 0; k < kLanes; ++k)
-    if (wanted[k] > 0) closed_form(f, targets[k], on[k] > 0 ? Side::kOnSurface : Side::kAway, c, k, out);
+    if (wanted[k] > 0)
+      closed_form(f, {x[k], x[kLanes + k], x[2 * kLanes + k]}, on[k] > 0 ? Side::kOnSurface : Side::kAway, c, k, out);
 }
 
 void add_near_panel(const Boundary& b, const TargetGroup& g, std::uint32_t t, const LanePanel& panel,
@@ -128,28 +126,30 @@ void add_near_panel(const Boundary& b, const TargetGroup& g, std::uint32_t t, co
                     double* total) {
   const PanelFrame& f = b.panels[t];
   LaneMoments moments;
-  double x[3 * kLanes], mask[kLanes], near[kLanes], on[kLanes];
-  std::array<Vec3, kLanes> targets;
+  double x[3 * kLanes], farther[3 * kLanes], mask[kLanes], near[kLanes], on[kLanes];
   bool others = false;
   const Vec3 away = f.vertex[0] + f.normal * (100 * std::sqrt(f.longest2));
   const Triangle& corner = b.mesh.triangles[t];
   for (std::size_t k = 0; k < kLanes; ++k) {
     const bool used = k < g.count;
-    targets[k] = g.x[used ? k : 0];
+    const Vec3& target = g.x[used ? k : 0];
     near[k] = used && distance2(g.x[k], b.centroid[t]) <= b.near2[t] ? 1 : 0;
     mask[k] = used && near[k] == 0 ? 1 : 0;
     others = others || mask[k] > 0;
     // A masked lane must not meet a source point: zero times infinity.
-    for (int i = 0; i < 3; ++i) x[static_cast<std::size_t>(i) * kLanes + k] = mask[k] > 0 ? g.x[k][i] : away[i];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int axis = static_cast<int>(i);
+      x[i * kLanes + k] = target[axis], farther[i * kLanes + k] = mask[k] > 0 ? target[axis] : away[axis];
+    }
     on[k] =
         used && (g.panel[k] == t || (g.vertex[k] != kNone && (corner[0] == g.vertex[k] || corner[1] == g.vertex[k] ||
                                                               corner[2] == g.vertex[k])))
             ? 1
             : 0;
   }
-  closed_forms(f, targets, on, near, c, kernels, moments);
+  closed_forms(f, x, on, near, c, kernels, moments);
   kernels.moments(panel, lane_tables(), moments, local, freedoms, total);
-  if (others) kernels.six_points(panel, lane_tables(), c, x, mask, local, freedoms, total);
+  if (others) kernels.six_points(panel, lane_tables(), c, farther, mask, local, freedoms, total);
 }
 
 }  // namespace sherd

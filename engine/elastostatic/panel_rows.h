@@ -17,7 +17,7 @@ LaneConstants lane_constants(Real nu);
 
 // Closed forms of a panel at the targets with `wanted` 1 (which is overwritten), zero at the others; `on` is 1 for
 // targets on the panel.
-void closed_forms(const PanelFrame& panel, const std::array<Vec3, kLanes>& targets, const double* on, double* wanted,
+void closed_forms(const PanelFrame& panel, const double* x, const double* on, double* wanted,
                   const LaneConstants& constants, const LaneKernels& kernels, LaneMoments& out);
 
 // Adds a panel that some targets are within the closed form's reach of to its freedoms (lane_kernels.h); the other

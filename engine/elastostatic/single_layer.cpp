@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/elastostatic/lane_kernels.h"
+#include "engine/elastostatic/panel_rows.h"
 #include "engine/elastostatic/panel_search.h"
 #include "kernels/core/parallel.h"
 #include "kernels/fmm/plan.h"
@@ -176,19 +176,29 @@ struct Layer {
     middle2.push_back(o.gauss7 * o.gauss7 * f.longest2), reach.push_back(std::sqrt(middle2.back()));
   }
   // All sums are without kelvin().
-  Vec3 closed_form(std::size_t i, const Vec3& x) const {
+  void add_closed(std::size_t i, LaneMask& mask, Lanes& lanes) const {
     const Density& q = density[i];
     const Real ratio = 3 - 4 * material.nu;
     if (constant[i]) {
       PanelValues v;
-      integrate_panel(panel[i], x, Side::kAway, v);
-      return q[0] * (ratio * v.inverse) + v.dyad * q[0];
+      for (std::size_t k = 0; k < lanes.count; ++k) {
+        if (mask.weight[k] == 0) continue;
+        integrate_panel(panel[i], lanes.target(k), Side::kAway, v);
+        lanes.add(k, q[0] * (ratio * v.inverse) + v.dyad * q[0]);
+      }
+      return;
     }
-    PanelMoments v;
-    integrate_panel_moments(panel[i], x, Side::kAway, v);
-    Vec3 u;
-    for (std::size_t k = 0; k < q.size(); ++k) u += q[k] * (ratio * v.inverse[k]) + v.dyad[k] * q[k];
-    return u;
+    static constexpr LaneMask kNone{};
+    LaneMoments m;
+    closed_forms(panel[i], lanes.x, kNone.weight, mask.weight, {ratio, 1, 0}, lane_kernels(), m);
+    for (std::size_t b = 0; b < q.size(); ++b) {
+      const auto& [xx, yy, zz, yz, xz, xy] = m.kernel[b];
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        lanes.u[k] += xx[k] * q[b].x + xy[k] * q[b].y + xz[k] * q[b].z;
+        lanes.u[kLanes + k] += xy[k] * q[b].x + yy[k] * q[b].y + yz[k] * q[b].z;
+        lanes.u[2 * kLanes + k] += xz[k] * q[b].x + yz[k] * q[b].y + zz[k] * q[b].z;
+      }
+    }
   }
   void add_points(const LaneSources& s, const LaneMask& mask, Lanes& lanes) const {
     lane_kernels().kelvin_sum(s, 3 - 4 * material.nu, least2, lanes.x, mask.weight, lanes.u);
@@ -233,9 +243,7 @@ struct Layer {
     if (three_known ? seven.any || fine.any || closed.any : three.any) add_points(far.part(3 * i, 3), three, lanes);
     if (seven.any) add_points(middle.part(7 * i, 7), seven, lanes);
     if (fine.any) add_points(FewForces(panel[i], quarters, density[i]).all(), fine, lanes);
-    if (!closed.any) return;
-    for (std::size_t k = 0; k < lanes.count; ++k)
-      if (closed.weight[k] > 0) lanes.add(k, closed_form(i, lanes.target(k)));
+    if (closed.any) add_closed(i, closed, lanes);
   }
 };
 
