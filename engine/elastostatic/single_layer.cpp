@@ -1,6 +1,7 @@
 #include "engine/elastostatic/single_layer.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "engine/elastostatic/panel_rows.h"
 #include "engine/elastostatic/panel_search.h"
@@ -140,13 +141,23 @@ struct Lanes {
 struct LaneMask {
   double weight[kLanes];
   bool any = false;
-
-  void set(std::size_t k, bool serves) { weight[k] = serves ? 1 : 0, any |= serves; }
 };
 
 constexpr LaneMask everywhere(double weight) {
   LaneMask m{};
   for (double& w : m.weight) w = weight;
+  return m;
+}
+
+// The lanes whose values are above `low` and not above `high`.
+inline LaneMask between(const Real (&value)[kLanes], Real low, Real high) {
+  LaneMask m;
+  int count = 0;
+  for (std::size_t k = 0; k < kLanes; ++k) {
+    const bool inside = (value[k] > low) & (value[k] <= high);
+    m.weight[k] = inside ? 1.0 : 0.0, count += inside;
+  }
+  m.any = count > 0;
   return m;
 }
 
@@ -170,7 +181,7 @@ struct Layer {
     least2 = std::min(least2, 1e-12 * f.area);
     // Displacements of constants, unlike their gradients, are within 1.4e-5 from two edges on (design notes, section
     // 2).
-    const Real exact = is_constant ? std::max(o.closed_form - 1, 0.0) : o.closed_form;
+    const Real exact = std::min(is_constant ? std::max(o.closed_form - 1, 0.0) : o.closed_form, o.gauss7);
     const Real closed = is_constant ? exact : kQuarters * exact;
     near2.push_back(closed * closed * f.longest2), quarters2.push_back(exact * exact * f.longest2);
     middle2.push_back(o.gauss7 * o.gauss7 * f.longest2), reach.push_back(std::sqrt(middle2.back()));
@@ -229,15 +240,12 @@ struct Layer {
   // A panel that some targets see by more than three points. `three_known`: the sums have its three points already.
   void add_near(std::size_t i, bool three_known, Lanes& lanes) const {
     static const RuleTable<28> quarters(make_quarters());
-    LaneMask three, seven, fine, closed;
     const Vec3 c = centroid[i];
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      const Real d2 = distance2(lanes.target(k), c);
-      three.set(k, d2 > middle2[i]);
-      seven.set(k, d2 > quarters2[i] && d2 <= middle2[i]);
-      fine.set(k, d2 > near2[i] && d2 <= quarters2[i]);
-      closed.set(k, d2 <= near2[i]);
-    }
+    Real d2[kLanes];
+    for (std::size_t k = 0; k < kLanes; ++k) d2[k] = distance2(lanes.target(k), c);
+    constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+    LaneMask three = between(d2, middle2[i], kInfinity), closed = between(d2, -1, near2[i]);
+    const LaneMask seven = between(d2, quarters2[i], middle2[i]), fine = between(d2, near2[i], quarters2[i]);
     if (three_known)
       for (double& w : three.weight) w -= 1;
     if (three_known ? seven.any || fine.any || closed.any : three.any) add_points(far.part(3 * i, 3), three, lanes);
