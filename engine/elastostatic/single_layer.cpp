@@ -181,9 +181,9 @@ struct Layer {
     least2 = std::min(least2, 1e-12 * f.area);
     // Displacements of constants, unlike their gradients, are within 1.4e-5 from two edges on (design notes, section
     // 2).
-    const Real exact = std::min(is_constant ? std::max(o.closed_form - 1, 0.0) : o.closed_form, o.gauss7);
-    const Real closed = is_constant ? exact : kQuarters * exact;
-    near2.push_back(closed * closed * f.longest2), quarters2.push_back(exact * exact * f.longest2);
+    const Real exact = is_constant ? std::max(o.closed_form - 1, 0.0) : o.closed_form;
+    const Real closed = std::min(is_constant ? exact : kQuarters * exact, o.gauss7), fine = std::min(exact, o.gauss7);
+    near2.push_back(closed * closed * f.longest2), quarters2.push_back(fine * fine * f.longest2);
     middle2.push_back(o.gauss7 * o.gauss7 * f.longest2), reach.push_back(std::sqrt(middle2.back()));
   }
   // All sums are without kelvin().
