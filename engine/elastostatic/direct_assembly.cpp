@@ -29,8 +29,8 @@ void assemble_collocated(const OperatorRows& operator_rows, const Testing& testi
 
 // Adds the tested rows for columns v0 .. v0 + lanes. Each strip of columns is owned by one task.
 template <class Scalar>
-void add_tested(const Boundary& boundary, const Testing& testing, const RowTester& tester,
-                const std::vector<double>& rows, std::size_t v0, std::size_t lanes, DenseOperator<Scalar>& out) {
+void add_tested(const Boundary& boundary, const Testing& testing, const RowTester& tester, const AlignedNumbers& rows,
+                std::size_t v0, std::size_t lanes, DenseOperator<Scalar>& out) {
   for (std::size_t r = 0; r < tester.vertices().size(); ++r) {
     const std::uint32_t v = tester.vertices()[r];
     if (!testing.galerkin(v)) continue;
@@ -49,7 +49,7 @@ void assemble_galerkin(const Boundary& boundary, const Reconstruction& reconstru
                        const OperatorRows& operator_rows, const Testing& testing, DenseOperator<Scalar>& out) {
   const std::size_t stride = kLaneBlock * out.size() / 3;
   const std::size_t batch_size = std::clamp<std::size_t>((std::size_t{128} << 20) / (stride * sizeof(double)), 12, 96);
-  std::vector<double> batch(batch_size * stride);
+  AlignedNumbers batch(batch_size * stride);
   SourceBlockBuilder builder(boundary, reconstruction, true);
   constexpr std::size_t kStrips = 8;  // of eight columns, a task
   const std::size_t vertices = out.size() / 3, strips = (vertices + kLanes - 1) / kLanes;

@@ -125,7 +125,8 @@ class NearField::Rows {
 
   const Source& source_;
   std::vector<std::uint32_t> slot_, vertices_;
-  std::vector<double> values_, freedom_, vertex_;
+  std::vector<double> values_;
+  AlignedNumbers freedom_, vertex_;
   std::vector<std::pair<std::size_t, bool>> near_;
   double x_[3 * kLanes], total_[kLanes];
   const LaneKernels& kernels_;

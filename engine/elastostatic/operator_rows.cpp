@@ -6,6 +6,7 @@
 #include "engine/elastostatic/panel_rows.h"
 #include "engine/elastostatic/panel_search.h"
 #include "engine/elastostatic/source_block.h"
+#include "kernels/core/aligned.h"
 
 namespace sherd {
 namespace {
@@ -40,8 +41,8 @@ class OwnRow {
 }  // namespace
 
 struct OperatorRows::Workspace {
-  std::vector<double> freedom, vertex;
-  double x[3 * kLanes], total[kLanes];
+  AlignedNumbers freedom, vertex;
+  alignas(64) double x[3 * kLanes], total[kLanes];
   OwnRow own;
 };
 

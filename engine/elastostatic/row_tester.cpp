@@ -21,7 +21,7 @@ void RowTester::test(const double* batch, std::size_t stride, std::size_t v0, st
   w.freedoms.assign(kLaneBlock * block_.freedoms, 0), w.rows.assign(kLaneBlock * block_.vertices.size(), 0);
   for (std::size_t p = 0; p < slot_.size(); ++p) {
     const double* in = batch + p / kLanes * stride + kLaneBlock * v0 + p % kLanes;
-    double value[kLaneBlock] = {};
+    alignas(64) double value[kLaneBlock] = {};
     for (std::size_t l = 0; l < lanes; ++l)
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j) value[(3 * j + i) * kLanes + l] = in[kLaneBlock * l + (3 * i + j) * kLanes];
