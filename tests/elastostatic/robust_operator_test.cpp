@@ -1,7 +1,10 @@
 // Laws of the direct operator over reconstructed displacements, and of its lane kernels.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/elastostatic/direct_assembly.h"
+#include "engine/elastostatic/panel_rows.h"
 #include "engine/elastostatic/source_block.h"
 #include "kernels/core/parallel.h"
 #include "tests/elastostatic/robust_support.h"
@@ -172,6 +175,62 @@ TEST_F(LanePair, AMaskedLaneAddsNothing) {
     for (std::size_t i = 0; i < freedoms.size(); ++i) EXPECT_TRUE(mask[i % kLanes] > 0 || freedoms[i] == 0) << i;
     for (std::size_t i = 0; i < kLanes; ++i) EXPECT_EQ(total[i] == 0, mask[i] == 0);
   }
+}
+
+// Closed forms eight at a time are those one by one: near and far from a panel, in its plane, over it, on it, close to
+// its edges and corners, for slender panels too; lanes that are not asked for are zero.
+TEST(RobustOperator, ClosedFormsOfLanesAreThoseOfOneTarget) {
+  Random random(9);
+  const LaneConstants constants{0.3, 0.7, 0.9};
+  int asked_for = 0, left = 0;
+  for (const LaneKernels* kernels : {&baseline_lane_kernels(), &lane_kernels()})
+    for (int round = 0; round < 400; ++round) {
+      const Real height = round % 4 == 0 ? std::pow(10, -random.uniform(0, 3)) : random.uniform(0.4, 1);
+      const Vec3 shift = random_vector(random);
+      const PanelFrame f =
+          make_panel(shift, shift + Vec3{1, 0.1, 0.2}, shift + Vec3{random.uniform(0, 1), height, 0.3});
+      double x[3 * kLanes], on[kLanes], wanted[kLanes];
+      Vec3 target[kLanes];
+      Side side[kLanes];
+      bool asked[kLanes];
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const Real a = random.uniform(0, 1), b = random.uniform(0, 1 - a);
+        const Vec3 inside = f.vertex[0] * (1 - a - b) + f.vertex[1] * a + f.vertex[2] * b;
+        const Vec3 edge = f.vertex[0] * a + f.vertex[1] * (1 - a);
+        const Vec3 choices[] = {
+            f.centroid() + random_vector(random) * 2.0,       f.centroid() + random_vector(random) * 0.3, inside,
+            inside + f.normal * random.uniform(-1e-3, 1e-3),  edge + random_vector(random) * 1e-6,        f.vertex[1],
+            f.vertex[1] + f.tangent[0] * random.uniform(0, 2)};
+        const std::size_t choice = random.next() % 7;
+        target[k] = choices[choice];
+        side[k] = choice == 2 || choice == 5 ? Side::kOnSurface : Side::kAway;
+        asked[k] = random.uniform(0, 1) < 0.8;
+        for (std::size_t i = 0; i < 3; ++i) x[i * kLanes + k] = target[k][static_cast<int>(i)];
+        on[k] = side[k] == Side::kOnSurface ? 1 : 0, wanted[k] = asked[k] ? 1 : 0;
+      }
+      LaneMoments lanes;
+      double rest[kLanes];
+      std::copy_n(wanted, kLanes, rest);
+      kernels->panel_moments(f, constants, x, on, rest, lanes);
+      for (std::size_t k = 0; k < kLanes; ++k) asked_for += asked[k], left += rest[k] > 0;
+      closed_forms(f, x, on, wanted, constants, *kernels, lanes);
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        PanelMoments one{};
+        if (asked[k]) integrate_panel_moments(f, target[k], side[k], one);
+        // As exact as the closed forms are: of the largest entry, for angles of 1 (moments.h).
+        const Real size = std::abs(one.inverse[0]);
+        for (std::size_t m = 0; m < kQuadraticMonomials; ++m) {
+          const Sym3& d = one.dyad[m];
+          const Real wanted_value[6] = {d.xx, d.yy, d.zz, d.yz, d.xz, d.xy};
+          for (std::size_t i = 0; i < 6; ++i)
+            ASSERT_NEAR(lanes.kernel[m][i][k], 0.7 * wanted_value[i] + (i < 3 ? 0.3 * one.inverse[m] : 0), 2e-11 * size)
+                << round << " " << k << " " << m << " " << i;
+        }
+        for (std::size_t m = 0; m < kCubicMonomials; ++m)
+          ASSERT_NEAR(lanes.angle[m][k], 0.9 * one.angle[m], 2e-11) << round << " " << k << " " << m;
+      }
+    }
+  EXPECT_LT(left, asked_for / 2);  // what the lanes leave to the one-by-one form: slender panels, edges
 }
 
 // A polynomial's value at node a of the cubic element.
