@@ -29,8 +29,8 @@ void assemble_collocated(const OperatorRows& operator_rows, const Testing& testi
 
 // Adds the tested rows for columns v0 .. v0 + lanes. Each strip of columns is owned by one task.
 template <class Scalar>
-void add_tested(const Boundary& boundary, const Testing& testing, const RowTester& tester,
-                const std::vector<double>& rows, std::size_t v0, std::size_t lanes, DenseOperator<Scalar>& out) {
+void add_tested(const Boundary& boundary, const Testing& testing, const RowTester& tester, const AlignedNumbers& rows,
+                std::size_t v0, std::size_t lanes, DenseOperator<Scalar>& out) {
   for (std::size_t r = 0; r < tester.vertices().size(); ++r) {
     const std::uint32_t v = tester.vertices()[r];
     if (!testing.galerkin(v)) continue;
@@ -49,21 +49,22 @@ void assemble_galerkin(const Boundary& boundary, const Reconstruction& reconstru
                        const OperatorRows& operator_rows, const Testing& testing, DenseOperator<Scalar>& out) {
   const std::size_t stride = kLaneBlock * out.size() / 3;
   const std::size_t batch_size = std::clamp<std::size_t>((std::size_t{128} << 20) / (stride * sizeof(double)), 12, 96);
-  std::vector<double> batch(batch_size * stride);
+  AlignedNumbers batch(batch_size * stride);
   SourceBlockBuilder builder(boundary, reconstruction, true);
-  const std::size_t vertices = out.size() / 3;
+  constexpr std::size_t kStrips = 8;  // of eight columns, a task
+  const std::size_t vertices = out.size() / 3, strips = (vertices + kLanes - 1) / kLanes;
+  std::vector<RowTester::Work> works((strips + kStrips - 1) / kStrips);
   for (std::size_t first = 0; first < testing.gauss_groups(); first += batch_size) {
     const std::size_t groups = std::min(batch_size, testing.gauss_groups() - first);
     parallel_for_chunks(groups, 4, [&](std::size_t begin, std::size_t end) {
       const auto workspace = operator_rows.make_workspace();
-      for (std::size_t g = begin; g < end; ++g) {
-        const std::span<const double> blocks = operator_rows.evaluate(testing.gauss_group(first + g), *workspace);
-        std::copy(blocks.begin(), blocks.end(), batch.begin() + static_cast<std::ptrdiff_t>(g * stride));
-      }
+      for (std::size_t g = begin; g < end; ++g)
+        operator_rows.evaluate(testing.gauss_group(first + g), *workspace,
+                               std::span(batch).subspan(g * stride, stride));
     });
     const RowTester tester(testing, first, groups, builder);
-    parallel_for_chunks((vertices + kLanes - 1) / kLanes, 8, [&](std::size_t begin, std::size_t end) {
-      RowTester::Work work;
+    parallel_for_chunks(strips, kStrips, [&](std::size_t begin, std::size_t end) {
+      RowTester::Work& work = works[begin / kStrips];
       for (std::size_t strip = begin; strip < end; ++strip) {
         const std::size_t v0 = strip * kLanes, lanes = std::min(kLanes, vertices - v0);
         tester.test(batch.data(), stride, v0, lanes, work);

@@ -65,7 +65,7 @@ std::string FastOperator::too_large(const Boundary& b, const Testing& testing, s
 
 void FastOperator::strengths(const Vec3Column& nodes, std::span<double> out) const {
   const std::size_t n = 3 * boundary_.panels.size();
-  const LaneTables& table = lane_tables();
+  const NodeTables& table = node_tables();
   parallel_for(boundary_.panels.size(), 256, [&](std::size_t t) {
     const PanelFrame& f = boundary_.panels[t];
     const Vec3 gs = f.shape_gradient(1), gt = f.shape_gradient(2);
@@ -73,7 +73,7 @@ void FastOperator::strengths(const Vec3Column& nodes, std::span<double> out) con
       Vec3 us, ut, u;  // means of the derivatives along the coordinates, and of the displacement, with the point's part
       for (std::size_t a = 0; a < cubic::kNodes; ++a) {
         const Vec3 v = nodes[reconstruction_.nodes(t)[a]];
-        us += v * table.three_s[a][q], ut += v * table.three_t[a][q], u += v * table.three_shape[a][q];
+        us += v * table.s[a][q], ut += v * table.t[a][q], u += v * table.shape[a][q];
       }
       const Vec3 guenter = gs * dot(f.normal, us) + gt * dot(f.normal, ut) - f.normal * (dot(gs, us) + dot(gt, ut));
       const std::size_t i = 3 * t + q;

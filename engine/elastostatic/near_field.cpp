@@ -83,14 +83,15 @@ class NearField::Rows {
     }
     if (near_.empty()) return;
     const LaneTables& tables = lane_tables();
-    node_.assign(kLaneBlock * block.nodes.size(), 0);
+    freedom_.assign(kLaneBlock * block.freedoms, 0);
     for (const auto& [i, closed] : near_) {
       const std::uint32_t* local = block.local[i].data();
       if (closed)
-        add_near_panel(b, g, block.panels[i], block.lane_panels[i], local, source_.constants, kernels_, node_.data(),
+        add_near_panel(b, g, block.panels[i], block.lane_panels[i], local, source_.constants, kernels_, freedom_.data(),
                        total_);
       else
-        kernels_.six_points(block.lane_panels[i], tables, source_.constants, x_, nullptr, local, node_.data(), total_);
+        kernels_.six_points(block.lane_panels[i], tables, source_.constants, x_, nullptr, local, freedom_.data(),
+                            total_);
     }
     gather(block);
     if (diagonal)
@@ -100,18 +101,17 @@ class NearField::Rows {
             for (int i = 0; i < 3; ++i)
               for (int j = 0; j < 3; ++j)
                 (*diagonal)[g.vertex[k]][i][j] += vertex_[kLaneBlock * v + (3 * i + j) * kLanes + k];
-    node_.assign(kLaneBlock * block.nodes.size(), 0);
+    freedom_.assign(kLaneBlock * block.freedoms, 0);
     for (const auto& [i, closed] : near_)
-      kernels_.three_points(block.lane_panels[i], tables, source_.negative, x_, block.local[i].data(), node_.data(),
+      kernels_.three_points(block.lane_panels[i], tables, source_.negative, x_, block.local[i].data(), freedom_.data(),
                             total_);
     gather(block);
   }
 
-  // Adds the block's nodes to the vertices they stand for; leaves them in vertex_, too.
+  // Adds the block's freedoms to the vertices they stand for; leaves them in vertex_, too.
   void gather(const SourceBlock& block) {
-    corner_.resize(2 * kLaneBlock * block.corners.size());
     vertex_.assign(kLaneBlock * block.vertices.size(), 0);
-    kernels_.gather(block.gather(), node_.data(), corner_.data(), vertex_.data());
+    kernels_.gather(block.gather(), freedom_.data(), vertex_.data());
     for (std::size_t v = 0; v < block.vertices.size(); ++v) {
       std::uint32_t& slot = slot_[block.vertices[v]];
       if (slot == kNone) {
@@ -125,7 +125,8 @@ class NearField::Rows {
 
   const Source& source_;
   std::vector<std::uint32_t> slot_, vertices_;
-  std::vector<double> values_, node_, corner_, vertex_;
+  std::vector<double> values_;
+  AlignedNumbers freedom_, vertex_;
   std::vector<std::pair<std::size_t, bool>> near_;
   double x_[3 * kLanes], total_[kLanes];
   const LaneKernels& kernels_;

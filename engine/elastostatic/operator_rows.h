@@ -27,9 +27,11 @@ class OperatorRows {
   ~OperatorRows();
 
   struct Workspace;
-  std::shared_ptr<Workspace> make_workspace() const;  // one per thread at a time
-  // One lane block (lane_kernels.h) a vertex: entry (i, j) of lane k is what component j there adds to component i at
-  // target k. Valid until the workspace is used again.
+  std::shared_ptr<Workspace> make_workspace() const;  // one per thread at a time; given back, it serves again
+  // Into `out`, one lane block (lane_kernels.h) a vertex: entry (i, j) of lane k is what component j there adds to
+  // component i at target k.
+  void evaluate(const TargetGroup& targets, Workspace& workspace, std::span<double> out) const;
+  // The same into the workspace: valid until it is used again.
   std::span<const double> evaluate(const TargetGroup& targets, Workspace& workspace) const;
 
  private:

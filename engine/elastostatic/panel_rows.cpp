@@ -47,23 +47,36 @@ std::array<cubic::Polynomial, N> point_basis(const std::array<TrianglePoint, N>&
   return out;
 }
 
+// A shape function's part of tables: its weights over the points of a rule.
+template <std::size_t N>
+void point_weights(const cubic::Polynomial& shape, const std::array<cubic::Polynomial, N>& points, double (&s)[N],
+                   double (&t)[N], double (&value)[N]) {
+  const cubic::Polynomial ds = cubic::derivative(shape, 0), dt = cubic::derivative(shape, 1);
+  for (std::size_t q = 0; q < N; ++q) {
+    s[q] = mean_product(ds, points[q]), t[q] = mean_product(dt, points[q]);
+    value[q] = mean_product(shape, points[q]);
+  }
+}
+
 LaneTables make_tables() {
+  static_assert(kPanelFreedoms == cubic::kFreedoms);
   LaneTables t{};
   const auto three = point_basis(kGauss3);
   const auto six = point_basis(kGauss6);
-  for (std::size_t a = 0; a < cubic::kNodes; ++a) {
-    const auto &shape = cubic::kShape[a], ds = cubic::derivative(shape, 0), dt = cubic::derivative(shape, 1);
+  for (std::size_t a = 0; a < kPanelFreedoms; ++a) {
+    const auto &shape = cubic::kHermite[a], ds = cubic::derivative(shape, 0), dt = cubic::derivative(shape, 1);
     for (std::size_t m = 0; m < kQuadraticMonomials; ++m) t.monomial_s[a][m] = ds[m], t.monomial_t[a][m] = dt[m];
     for (std::size_t m = 0; m < kCubicMonomials; ++m) t.monomial_shape[a][m] = shape[m];
-    for (std::size_t q = 0; q < 3; ++q) {
-      t.three_s[a][q] = mean_product(ds, three[q]), t.three_t[a][q] = mean_product(dt, three[q]);
-      t.three_shape[a][q] = mean_product(shape, three[q]);
-    }
-    for (std::size_t q = 0; q < 6; ++q) {
-      t.six_s[a][q] = mean_product(ds, six[q]), t.six_t[a][q] = mean_product(dt, six[q]);
-      t.six_shape[a][q] = mean_product(shape, six[q]);
-    }
+    point_weights(shape, three, t.three_s[a], t.three_t[a], t.three_shape[a]);
+    point_weights(shape, six, t.six_s[a], t.six_t[a], t.six_shape[a]);
   }
+  return t;
+}
+
+NodeTables make_node_tables() {
+  NodeTables t{};
+  const auto three = point_basis(kGauss3);
+  for (std::size_t a = 0; a < cubic::kNodes; ++a) point_weights(cubic::kShape[a], three, t.s[a], t.t[a], t.shape[a]);
   return t;
 }
 
@@ -87,6 +100,11 @@ const LaneTables& lane_tables() {
   return tables;
 }
 
+const NodeTables& node_tables() {
+  static const NodeTables tables = make_node_tables();
+  return tables;
+}
+
 LaneConstants lane_constants(Real nu) {
   LaneConstants c;
   c.two = 1 / (8 * std::numbers::pi * (1 - nu));
@@ -95,29 +113,43 @@ LaneConstants lane_constants(Real nu) {
   return c;
 }
 
+void closed_forms(const PanelFrame& f, const double* x, const double* on, double* wanted, const LaneConstants& c,
+                  const LaneKernels& kernels, LaneMoments& out) {
+  kernels.panel_moments(f, c, x, on, wanted, out);
+  for (std::size_t k = 0; k < kLanes; ++k)
+    if (wanted[k] > 0)
+      closed_form(f, {x[k], x[kLanes + k], x[2 * kLanes + k]}, on[k] > 0 ? Side::kOnSurface : Side::kAway, c, k, out);
+}
+
 void add_near_panel(const Boundary& b, const TargetGroup& g, std::uint32_t t, const LanePanel& panel,
-                    const std::uint32_t* local, const LaneConstants& c, const LaneKernels& kernels, double* nodes,
+                    const std::uint32_t* local, const LaneConstants& c, const LaneKernels& kernels, double* freedoms,
                     double* total) {
   const PanelFrame& f = b.panels[t];
-  LaneMoments moments{};
-  double x[3 * kLanes], mask[kLanes];
+  LaneMoments moments;
+  double x[3 * kLanes], farther[3 * kLanes], mask[kLanes], near[kLanes], on[kLanes];
   bool others = false;
   const Vec3 away = f.vertex[0] + f.normal * (100 * std::sqrt(f.longest2));
+  const Triangle& corner = b.mesh.triangles[t];
   for (std::size_t k = 0; k < kLanes; ++k) {
-    const bool used = k < g.count, near = used && distance2(g.x[k], b.centroid[t]) <= b.near2[t];
-    mask[k] = used && !near ? 1 : 0;
+    const bool used = k < g.count;
+    const Vec3& target = g.x[used ? k : 0];
+    near[k] = used && distance2(g.x[k], b.centroid[t]) <= b.near2[t] ? 1 : 0;
+    mask[k] = used && near[k] == 0 ? 1 : 0;
     others = others || mask[k] > 0;
     // A masked lane must not meet a source point: zero times infinity.
-    for (int i = 0; i < 3; ++i) x[static_cast<std::size_t>(i) * kLanes + k] = mask[k] > 0 ? g.x[k][i] : away[i];
-    if (!near) continue;
-    const Triangle& corner = b.mesh.triangles[t];
-    const bool on =
-        g.panel[k] == t ||
-        (g.vertex[k] != kNone && (corner[0] == g.vertex[k] || corner[1] == g.vertex[k] || corner[2] == g.vertex[k]));
-    closed_form(f, g.x[k], on ? Side::kOnSurface : Side::kAway, c, k, moments);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int axis = static_cast<int>(i);
+      x[i * kLanes + k] = target[axis], farther[i * kLanes + k] = mask[k] > 0 ? target[axis] : away[axis];
+    }
+    on[k] =
+        used && (g.panel[k] == t || (g.vertex[k] != kNone && (corner[0] == g.vertex[k] || corner[1] == g.vertex[k] ||
+                                                              corner[2] == g.vertex[k])))
+            ? 1
+            : 0;
   }
-  kernels.moments(panel, lane_tables(), moments, local, nodes, total);
-  if (others) kernels.six_points(panel, lane_tables(), c, x, mask, local, nodes, total);
+  closed_forms(f, x, on, near, c, kernels, moments);
+  kernels.moments(panel, lane_tables(), moments, local, freedoms, total);
+  if (others) kernels.six_points(panel, lane_tables(), c, farther, mask, local, freedoms, total);
 }
 
 }  // namespace sherd

@@ -40,7 +40,7 @@ std::vector<std::vector<std::uint32_t>> wide_corners(const SurfaceCorners& corne
 }  // namespace
 
 Reconstruction::Reconstruction(const SurfaceMesh& mesh, Real nu, const ReconstructionOptions& options)
-    : vertices_(mesh.vertex_count()), nodes_(mesh.triangle_count()) {
+    : vertices_(mesh.vertex_count()), nodes_(mesh.triangle_count()), slopes_(mesh.triangle_count()) {
   for (std::size_t t = 0; t < nodes_.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) nodes_[t][k] = mesh.triangles[t][k];
   if (options.element == Element::kLinear) {
@@ -64,6 +64,11 @@ Reconstruction::Reconstruction(const SurfaceMesh& mesh, Real nu, const Reconstru
 
 void Reconstruction::close_node() {
   node_entries_.push_back(entries_.size()), node_terms_.push_back(terms_.size());
+}
+
+std::uint32_t Reconstruction::close_slope() {
+  slope_entries_.push_back(entries_of_slopes_.size()), slope_terms_.push_back(terms_of_slopes_.size());
+  return static_cast<std::uint32_t>(slope_count() - 1);
 }
 
 // Hermite cubic along each edge; at a crease the mean of the fits of both sides, so that u stays continuous, which the
@@ -91,18 +96,23 @@ void Reconstruction::add_edge_nodes(const SurfaceMesh& mesh, const SurfaceCorner
       at_q.push_back(corners.at(other / 3, other % 3));
     }
     prefer_wide(at_p), prefer_wide(at_q);
+    const auto make_slope = [&](const std::vector<std::uint32_t>& ends, const Vec3& along) {
+      for (const std::uint32_t c : ends) {
+        const SurfaceFit& f = fits[c];
+        const Real w = 1 / static_cast<Real>(ends.size()), x = dot(along, f.a()), y = dot(along, f.b());
+        const Real rise = x * f.slope_x() + y * f.slope_y() - dot(along, f.normal());
+        terms_of_slopes_.push_back({c, w * x, w * y, w * rise});
+      }
+      return close_slope();
+    };
+    const std::uint32_t from_p = make_slope(at_p, d), from_q = make_slope(at_q, -d);
+    slopes_[t][2 * k] = from_p, slopes_[t][2 * k + 1] = from_q;
+    if (other != kNone) slopes_[other / 3][2 * (other % 3)] = from_q, slopes_[other / 3][2 * (other % 3) + 1] = from_p;
     for (int third = 1; third <= 2; ++third) {
       const Real l = third / 3.0, l2 = l * l, l3 = l2 * l, to_q = 3 * l2 - 2 * l3;
       entries_.push_back({p, 1 - to_q}), entries_.push_back({q, to_q});
-      const auto add = [&](const std::vector<std::uint32_t>& ends, Real factor) {
-        for (const std::uint32_t c : ends) {
-          const SurfaceFit& f = fits[c];
-          const Real w = factor / static_cast<Real>(ends.size()), x = dot(d, f.a()), y = dot(d, f.b());
-          const Real rise = x * f.slope_x() + y * f.slope_y() - dot(d, f.normal());
-          terms_.push_back({c, w * x, w * y, w * rise});
-        }
-      };
-      add(at_p, l - 2 * l2 + l3), add(at_q, -l2 + l3);
+      for (const auto& [slope, factor] : {std::pair{from_p, l - 2 * l2 + l3}, {from_q, l2 - l3}})
+        for (const Term& m : slope_terms(slope)) terms_.push_back({m.corner, factor * m.x, factor * m.y, factor * m.z});
       const auto node = static_cast<std::uint32_t>(node_count());
       close_node();
       nodes_[t][3 + 2 * k + static_cast<std::size_t>(third - 1)] = node;
@@ -136,7 +146,13 @@ void Reconstruction::add_centres(const SurfaceMesh& mesh) {
 }
 
 void Reconstruction::add_linear_nodes(const SurfaceMesh& mesh) {
-  for (std::size_t t = 0; t < nodes_.size(); ++t)
+  for (std::size_t t = 0; t < nodes_.size(); ++t) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      const std::uint32_t p = mesh.triangles[t][k / 2], q = mesh.triangles[t][(k / 2 + 1) % 3];
+      const Real outward = k % 2 == 0 ? 1 : -1;
+      entries_of_slopes_.push_back({p, -outward}), entries_of_slopes_.push_back({q, outward});
+      slopes_[t][k] = close_slope();
+    }
     for (std::size_t k = 0; k < 7; ++k) {
       const Triangle& v = mesh.triangles[t];
       if (k == 6)
@@ -148,6 +164,7 @@ void Reconstruction::add_linear_nodes(const SurfaceMesh& mesh) {
       nodes_[t][3 + k] = static_cast<std::uint32_t>(node_count());
       close_node();
     }
+  }
 }
 
 std::span<const Reconstruction::Entry> Reconstruction::entries(std::uint32_t node) const {
@@ -157,6 +174,12 @@ std::span<const Reconstruction::Entry> Reconstruction::entries(std::uint32_t nod
 std::span<const Reconstruction::Term> Reconstruction::terms(std::uint32_t node) const {
   const std::size_t i = node - vertices_;
   return {terms_.data() + node_terms_[i], node_terms_[i + 1] - node_terms_[i]};
+}
+std::span<const Reconstruction::Entry> Reconstruction::slope_entries(std::uint32_t slope) const {
+  return {entries_of_slopes_.data() + slope_entries_[slope], slope_entries_[slope + 1] - slope_entries_[slope]};
+}
+std::span<const Reconstruction::Term> Reconstruction::slope_terms(std::uint32_t slope) const {
+  return {terms_of_slopes_.data() + slope_terms_[slope], slope_terms_[slope + 1] - slope_terms_[slope]};
 }
 std::span<const Reconstruction::GradientEntry> Reconstruction::gradient(std::uint32_t corner) const {
   return {gradients_.data() + first_gradient_[corner], first_gradient_[corner + 1] - first_gradient_[corner]};

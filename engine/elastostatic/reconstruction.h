@@ -50,6 +50,12 @@ class Reconstruction {
   // Of a node that is not a vertex.
   std::span<const Entry> entries(std::uint32_t node) const;
   std::span<const Term> terms(std::uint32_t node) const;
+  // The same elements by their vertices and slopes (cubic::kHermite): the six slopes of triangle t, and what a slope,
+  // the derivative along an edge times its length, is made of. Both triangles of an edge share its two slopes.
+  std::size_t slope_count() const { return slope_entries_.size() - 1; }
+  const std::array<std::uint32_t, 6>& slopes(std::size_t t) const { return slopes_[t]; }
+  std::span<const Entry> slope_entries(std::uint32_t slope) const;
+  std::span<const Term> slope_terms(std::uint32_t slope) const;
   std::size_t corner_count() const { return frames_.size(); }
   const Frame& frame(std::uint32_t corner) const { return frames_[corner]; }
   std::span<const GradientEntry> gradient(std::uint32_t corner) const;
@@ -66,12 +72,17 @@ class Reconstruction {
   void add_centres(const SurfaceMesh& mesh);
   void add_linear_nodes(const SurfaceMesh& mesh);
   void close_node();
+  std::uint32_t close_slope();
 
   std::size_t vertices_;
   std::vector<std::array<std::uint32_t, cubic::kNodes>> nodes_;
+  std::vector<std::array<std::uint32_t, 6>> slopes_;
   std::vector<std::size_t> node_entries_{0}, node_terms_{0};  // first entry, first term of a node
   std::vector<Entry> entries_;
   std::vector<Term> terms_;
+  std::vector<std::size_t> slope_entries_{0}, slope_terms_{0};  // first entry, first term of a slope
+  std::vector<Entry> entries_of_slopes_;
+  std::vector<Term> terms_of_slopes_;
   std::vector<Frame> frames_;
   std::vector<std::size_t> first_gradient_{0};
   std::vector<GradientEntry> gradients_;

@@ -3,6 +3,7 @@
 #pragma once
 #include "engine/elastostatic/source_block.h"
 #include "engine/elastostatic/testing.h"
+#include "kernels/core/aligned.h"
 
 namespace sherd {
 
@@ -12,7 +13,7 @@ class RowTester {
   RowTester(const Testing& testing, std::size_t first, std::size_t groups, SourceBlockBuilder& builder);
 
   struct Work {
-    std::vector<double> nodes, corners, rows;
+    AlignedNumbers freedoms, rows;
   };
   // Eight columns at a time in the lanes: `batch` holds the groups' lane blocks (one per column) `stride` numbers
   // apart; columns v0 .. v0 + lanes are tested. work.rows then has one lane block a vertex of vertices(), entry
@@ -22,7 +23,7 @@ class RowTester {
 
  private:
   SourceBlock block_;
-  std::vector<double> weights_;    // ten a point
+  std::vector<double> weights_;    // kPanelFreedoms a point
   std::vector<std::size_t> slot_;  // of a point's panel in the block
 };
 

@@ -37,8 +37,7 @@ SourceBlockBuilder::SourceBlockBuilder(const Boundary& b, const Reconstruction& 
     : boundary_(b),
       reconstruction_(r),
       local_vertices_(local_vertices),
-      node_of_(r.node_count(), kNone),
-      corner_of_(r.corner_count(), kNone),
+      freedom_of_(r.vertex_count() + r.slope_count(), kNone),
       vertex_of_(local_vertices ? r.vertex_count() : 0, kNone) {}
 
 std::uint32_t SourceBlockBuilder::vertex(SourceBlock& block, std::uint32_t global) {
@@ -47,44 +46,51 @@ std::uint32_t SourceBlockBuilder::vertex(SourceBlock& block, std::uint32_t globa
 
 SourceBlock SourceBlockBuilder::build(std::span<const std::uint32_t> panels) {
   SourceBlock block;
-  std::vector<std::uint32_t> nodes, corners;
+  const auto vertices = static_cast<std::uint32_t>(reconstruction_.vertex_count());
+  std::vector<std::uint32_t> freedoms;
   for (const std::uint32_t t : panels) {
     block.panels.push_back(t), block.lane_panels.push_back(make_lane_panel(boundary_.panels[t]));
-    std::array<std::uint32_t, cubic::kNodes> local;
-    for (std::size_t a = 0; a < cubic::kNodes; ++a) local[a] = number(reconstruction_.nodes(t)[a], node_of_, nodes);
+    std::array<std::uint32_t, kPanelFreedoms> local;
+    for (std::size_t a = 0; a < 3; ++a) local[a] = number(reconstruction_.nodes(t)[a], freedom_of_, freedoms);
+    for (std::size_t a = 0; a < 6; ++a)
+      local[3 + a] = number(vertices + reconstruction_.slopes(t)[a], freedom_of_, freedoms);
     block.local.push_back(local);
   }
-  for (const std::uint32_t node : nodes) add_node(block, node, corners);
-  for (const std::uint32_t c : corners) add_corner(block, c);
-  for (const std::uint32_t node : nodes) node_of_[node] = kNone;
-  for (const std::uint32_t c : corners) corner_of_[c] = kNone;
+  block.freedoms = freedoms.size();
+  std::vector<CornerTerm> terms;
+  for (std::uint32_t i = 0; i < freedoms.size(); ++i) add_freedom(block, freedoms[i], i, terms);
+  std::ranges::stable_sort(terms, {}, &CornerTerm::corner);
+  for (std::size_t first = 0, last = 0; first < terms.size(); first = last) {
+    while (last < terms.size() && terms[last].corner == terms[first].corner) ++last;
+    add_corner(block, {terms.data() + first, last - first});
+  }
+  for (const std::uint32_t i : freedoms) freedom_of_[i] = kNone;
   for (const std::uint32_t v : block.vertices) vertex_of_[v] = kNone;
   return block;
 }
 
-void SourceBlockBuilder::add_node(SourceBlock& block, std::uint32_t node, std::vector<std::uint32_t>& corners) {
+void SourceBlockBuilder::add_freedom(SourceBlock& block, std::uint32_t freedom, std::uint32_t local,
+                                     std::vector<CornerTerm>& terms) {
   const Reconstruction& r = reconstruction_;
-  LaneGather::Node out{};
-  out.first_entry = size32(block.entries), out.first_term = size32(block.terms);
-  out.vertex = kNone;
-  if (node < r.vertex_count())
-    out.vertex = vertex(block, node);
-  else {
-    for (const Reconstruction::Entry& e : r.entries(node)) block.entries.push_back({vertex(block, e.vertex), e.weight});
-    for (const Reconstruction::Term& t : r.terms(node))
-      block.terms.push_back({number(t.corner, corner_of_, corners), t.x, t.y, t.z});
+  if (freedom < r.vertex_count()) {
+    block.entries.push_back({local, vertex(block, freedom), 1});
+    return;
   }
-  out.last_entry = size32(block.entries), out.last_term = size32(block.terms);
-  block.nodes.push_back(out);
+  const std::uint32_t slope = freedom - static_cast<std::uint32_t>(r.vertex_count());
+  for (const Reconstruction::Entry& e : r.slope_entries(slope))
+    block.entries.push_back({local, vertex(block, e.vertex), e.weight});
+  for (const Reconstruction::Term& t : r.slope_terms(slope)) terms.push_back({t.corner, {local, t.x, t.y, t.z}});
 }
 
-void SourceBlockBuilder::add_corner(SourceBlock& block, std::uint32_t corner) {
+void SourceBlockBuilder::add_corner(SourceBlock& block, std::span<const CornerTerm> terms) {
   const Reconstruction& r = reconstruction_;
+  const std::uint32_t corner = terms.front().corner;
   LaneGather::Corner out{};
-  out.first = size32(block.gradients);
+  out.first_term = size32(block.terms), out.first_gradient = size32(block.gradients);
+  for (const CornerTerm& t : terms) block.terms.push_back(t.term);
   for (const Reconstruction::GradientEntry& g : r.gradient(corner))
     block.gradients.push_back({vertex(block, g.vertex), g.x, g.y});
-  out.last = size32(block.gradients);
+  out.last_term = size32(block.terms), out.last_gradient = size32(block.gradients);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       out.frame_x[3 * i + j] = r.frame(corner).x[i][j], out.frame_y[3 * i + j] = r.frame(corner).y[i][j];

@@ -1,4 +1,4 @@
-// Panels that are near each other as the lane kernels want them, with the nodes, corners and vertices they touch
+// Panels that are near each other as the lane kernels want them, with the freedoms, corners and vertices they touch
 // numbered locally, so that what a group of targets accumulates stays in the cache.
 #pragma once
 #include <span>
@@ -12,8 +12,8 @@ namespace sherd {
 struct SourceBlock {
   std::vector<std::uint32_t> panels;
   std::vector<LanePanel> lane_panels;
-  std::vector<std::array<std::uint32_t, cubic::kNodes>> local;  // per panel
-  std::vector<LaneGather::Node> nodes;
+  std::vector<std::array<std::uint32_t, kPanelFreedoms>> local;  // per panel
+  std::size_t freedoms = 0;
   std::vector<LaneGather::Entry> entries;
   std::vector<LaneGather::Term> terms;
   std::vector<LaneGather::Corner> corners;
@@ -21,7 +21,7 @@ struct SourceBlock {
   std::vector<std::uint32_t> vertices;  // local -> global, when vertices are numbered locally
 
   LaneGather gather() const {
-    return {nodes.data(), nodes.size(), entries.data(), terms.data(), corners.data(), corners.size(), gradients.data()};
+    return {entries.data(), entries.size(), terms.data(), corners.data(), corners.size(), gradients.data()};
   }
 };
 
@@ -32,14 +32,18 @@ class SourceBlockBuilder {
   SourceBlock build(std::span<const std::uint32_t> panels);
 
  private:
-  void add_node(SourceBlock& block, std::uint32_t node, std::vector<std::uint32_t>& corners);
-  void add_corner(SourceBlock& block, std::uint32_t corner);
+  struct CornerTerm {
+    std::uint32_t corner;
+    LaneGather::Term term;
+  };
+  void add_freedom(SourceBlock& block, std::uint32_t freedom, std::uint32_t local, std::vector<CornerTerm>& terms);
+  void add_corner(SourceBlock& block, std::span<const CornerTerm> terms);
   std::uint32_t vertex(SourceBlock& block, std::uint32_t global);
 
   const Boundary& boundary_;
   const Reconstruction& reconstruction_;
   bool local_vertices_;
-  std::vector<std::uint32_t> node_of_, corner_of_, vertex_of_;
+  std::vector<std::uint32_t> freedom_of_, vertex_of_;  // freedoms: vertices, then slopes
 };
 
 }  // namespace sherd

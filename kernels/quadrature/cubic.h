@@ -53,6 +53,28 @@ constexpr Polynomial derivative(const Polynomial& p, int which) {
 
 inline constexpr std::array<Polynomial, kNodes> kShape = make_shapes();
 
+// The same element by what it is made of where its centre is a quarter of the edge nodes less a sixth of the vertices:
+// the values at the vertices, 0 to 2, and for edge e the derivatives along it, times its length, outward from vertex e
+// and from vertex e+1, 3 + 2 e and 4 + 2 e.
+inline constexpr int kFreedoms = 9;
+
+constexpr std::array<Polynomial, kFreedoms> make_hermite() {
+  std::array<Polynomial, kFreedoms> out{};
+  // The freedom is `start` at the third of edge e after its vertex e, `end` at the one before the next vertex.
+  const auto add = [&](std::size_t freedom, std::size_t e, Real start, Real end) {
+    for (std::size_t i = 0; i < kCubicMonomials; ++i)
+      out[freedom][i] += start * kShape[3 + 2 * e][i] + end * kShape[4 + 2 * e][i] + (start + end) / 4 * kShape[9][i];
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < kCubicMonomials; ++i) out[k][i] = kShape[k][i] - kShape[9][i] / 6;
+    add(k, k, 20.0 / 27, 7.0 / 27), add(k, (k + 2) % 3, 7.0 / 27, 20.0 / 27);
+    add(3 + 2 * k, k, 4.0 / 27, 2.0 / 27), add(4 + 2 * k, k, 2.0 / 27, 4.0 / 27);
+  }
+  return out;
+}
+
+inline constexpr std::array<Polynomial, kFreedoms> kHermite = make_hermite();
+
 constexpr std::array<Real, kCubicMonomials> monomials(Real s, Real t) {
   return {1, s, t, s * s, s * t, t * t, s * s * s, s * s * t, s * t * t, t * t * t};
 }

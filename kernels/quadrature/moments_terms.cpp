@@ -16,7 +16,7 @@ struct PlaneEdge {
 
 // The edge is seen from more than two of its lengths: about its middle, so that no large terms cancel. The
 // singularities lie beyond 4 half-lengths, the 8-point rule errs below 8^-16 = 4e-15.
-void far_edge(const PlaneEdge& g, bool cubes, EdgeMoments& e) {
+void far_edge(const PlaneEdge& g, bool cubes, EdgeMoments<Real>& e) {
   e.base_u = 0.5 * (g.au + g.bu), e.base_w = 0.5 * (g.aw + g.bw);
   e.step_u = 0.5 * (g.bu - g.au), e.step_w = 0.5 * (g.bw - g.aw);
   const Real half = 0.5 * g.length;
@@ -36,7 +36,7 @@ void far_edge(const PlaneEdge& g, bool cubes, EdgeMoments& e) {
 }
 
 // Closed forms about the foot of the target on the edge's line, which keep their relative accuracy close to it.
-void near_edge(const PlaneEdge& g, Real ra2, Real rb2, Real tu, Real tw, Real clamp, bool cubes, EdgeMoments& e) {
+void near_edge(const PlaneEdge& g, Real ra2, Real rb2, Real tu, Real tw, Real clamp, bool cubes, EdgeMoments<Real>& e) {
   const Real sa = g.au * tu + g.aw * tw, sb = g.bu * tu + g.bw * tw;
   const Real ra = std::sqrt(std::max(ra2, clamp)), rb = std::sqrt(std::max(rb2, clamp));
   const Real h2 = std::max(e.p * e.p + g.d * g.d, clamp);
@@ -57,8 +57,8 @@ void near_edge(const PlaneEdge& g, Real ra2, Real rb2, Real tu, Real tw, Real cl
 
 }  // namespace
 
-PanelView view_panel(const PanelFrame& f, const Vec3& x, Side side, bool cubes) {
-  PanelView v;
+PanelView<Real> view_panel(const PanelFrame& f, const Vec3& x, Side side, bool cubes) {
+  PanelView<Real> v;
   const PlaneTerms plane = plane_terms(f, x, side);
   v.d = plane.d, v.omega = plane.omega;
   // u along the longest edge: the two directions of a sliver keep their own scales.
@@ -73,7 +73,7 @@ PanelView view_panel(const PanelFrame& f, const Vec3& x, Side side, bool cubes) 
   }
   for (int a = 0; a < 3; ++a) {
     const int b = a == 2 ? 0 : a + 1;
-    EdgeMoments& e = v.edge[a];
+    EdgeMoments<Real>& e = v.edge[a];
     const Real tu = dot(f.tangent[a], v.u), tw = dot(f.tangent[a], v.w);
     e.outward_u = tw, e.outward_w = -tu;
     // From the nearer corner, and not from the rounded u, w: its rounding is relative to the distance from the edge
@@ -95,37 +95,10 @@ PanelView view_panel(const PanelFrame& f, const Vec3& x, Side side, bool cubes) 
   return v;
 }
 
-// I_k[q] is the integral of q l^k over the panel, J_k over its edges (m outward, p = rho . m). From the divergence
-// theorem
-//   I_-3[rho_i q] = -sum_e m_i J_-1[q] + I_-1[d_i q],
-//   (n + 1) I_-1[q] = -d^2 I_-3[q] + sum_e p J_-1[q] for q homogeneous of degree n,  d I_-3[1] = Omega.
-void plane_moments(const PanelView& v, PlaneMoments& out) {
-  Real p[tri(3)] = {}, mu[tri(4)] = {}, mw[4] = {};
-  for (const EdgeMoments& e : v.edge) {
-    Real j[tri(4)];
-    edge_table<3>(e, e.k, j);
-    for (int i = 0; i < tri(3); ++i) p[i] += e.p * j[i];
-    for (int i = 0; i < tri(4); ++i) mu[i] += e.outward_u * j[i];
-    for (int g = 0; g < 4; ++g) mw[g] += e.outward_w * j[tri(g) + g];
-  }
-  Real *one = out.inverse, *three = out.cube;
-  const Real d2 = v.d * v.d;
-  three[0] = v.omega;
-  one[0] = p[0] - v.d * v.omega;
-  three[1] = -mu[0], three[2] = -mw[0];
-  for (int g = 1; g < 4; ++g) {
-    if (g < 3)
-      for (int j = 0; j <= g; ++j) one[tri(g) + j] = (p[tri(g) + j] - d2 * three[tri(g) + j]) / (g + 1);
-    // Degree g + 1: u^(g-j) w^j from q = u^(g-j) w^j through rho_u, the last through rho_w.
-    for (int j = 0; j <= g; ++j) three[tri(g + 1) + j] = -mu[tri(g) + j] + (j < g ? (g - j) * one[tri(g - 1) + j] : 0);
-    three[tri(g + 1) + g + 1] = -mw[g] + g * one[tri(g - 1) + g - 1];
-  }
-}
-
 // I_-5[rho_i q] = -(sum_e m_i J_-3[q] - I_-3[d_i q]) / 3,  3 d^3 I_-5[1] = Omega + d sum_e p J_-3[1].
-void plane_fifths(const PanelView& v, const PlaneMoments& m, Real (&fifth)[tri(6)]) {
+void plane_fifths(const PanelView<Real>& v, const PlaneMoments<Real>& m, Real (&fifth)[tri(6)]) {
   Real p = 0, mu[tri(5)] = {}, mw[5] = {};
-  for (const EdgeMoments& e : v.edge) {
+  for (const EdgeMoments<Real>& e : v.edge) {
     Real j[tri(5)];
     edge_table<4>(e, e.e, j);
     p += e.p * j[0];

@@ -288,6 +288,36 @@ TEST(LoadPotential, RulesAgreeWithClosedFormsAtEveryKindOfTarget) {
   }
 }
 
+// Enough pairs for the fast multipole method, panels and points at every distance from one another: the sums it makes
+// are corrected to those that a few points get directly.
+TEST(LoadPotential, FastSumsAreTheDirectOnes) {
+  const SurfaceMesh mesh = make_box({1, 1, 1}, 0.3), carrier = make_sphere(0.5, 0.014);
+  const Boundary boundary(mesh, QuadratureOptions{});
+  const ParticularSolution none({}, kMaterial);
+  Random random(6);
+  const auto vector = [&] { return Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; };
+  Load load;
+  for (std::size_t i = 0; i < 6 * mesh.triangle_count(); ++i) load.quadratic_traction.push_back(vector());
+  for (std::uint32_t t = 0; t < carrier.triangle_count(); ++t) {
+    load.panels.corners.push_back({carrier.corner(t, 0), carrier.corner(t, 1), carrier.corner(t, 2)});
+    load.panels.traction.push_back(vector()), load.panels.face.push_back(0);
+  }
+  Vec3Column points, some;
+  const double sources = 3.0 * static_cast<double>(carrier.triangle_count());
+  while (static_cast<double>(points.size()) * sources < 2.2e9)
+    points.push_back(normalized(vector()) * random.uniform(0.49, 0.51));
+  const std::size_t step = points.size() / 200;
+  for (std::size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
+  const auto potential = [&](const Vec3Column& x) {
+    return load_potential(boundary, load, none, kMaterial, QuadratureOptions{}, x);
+  };
+  const Vec3Column fast = potential(points), direct = potential(some);
+  Real error = 0, size = 0;
+  for (std::size_t i = 0; i < some.size(); ++i)
+    error = std::max(error, norm(fast[i * step] - direct[i])), size = std::max(size, norm(direct[i]));
+  EXPECT_LT(error, 1e-5 * size);  // the method is asked for 1e-6
+}
+
 TEST(ElasticBody, FactorsAndCoarseSpaceGiveTheSameSolution) {
   const SurfaceMesh mesh = make_plate(1, 1, 0.05, 0.12);
   Load load;

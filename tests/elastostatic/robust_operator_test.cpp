@@ -1,7 +1,10 @@
 // Laws of the direct operator over reconstructed displacements, and of its lane kernels.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/elastostatic/direct_assembly.h"
+#include "engine/elastostatic/panel_rows.h"
 #include "engine/elastostatic/source_block.h"
 #include "kernels/core/parallel.h"
 #include "tests/elastostatic/robust_support.h"
@@ -115,11 +118,11 @@ TEST(RobustOperator, SameBitsForAnyNumberOfThreads) {
 // Both builds of the lane kernels on one random panel; they differ by the order of fused operations alone.
 class LanePair : public ::testing::Test {
  protected:
-  static constexpr std::size_t kNodes = 14;
+  static constexpr std::size_t kFreedoms = 14;
   LanePanel panel{};
   LaneTables tables{};
   LaneConstants constants{0.03, 0.06, 0.08};
-  std::uint32_t local[10] = {3, 0, 7, 1, 13, 5, 6, 2, 11, 9};
+  std::uint32_t local[kPanelFreedoms] = {3, 0, 7, 1, 13, 5, 6, 2, 11};
   double x[3 * kLanes], mask[kLanes];
   Random random{12};
 
@@ -144,67 +147,144 @@ class LanePair : public ::testing::Test {
 
 TEST_F(LanePair, BaselineAndWideKernelsAgree) {
   const LaneKernels &base = baseline_lane_kernels(), &wide = lane_kernels();
-  const auto start = random_values(kNodes * kLaneBlock), sums = random_values(kLanes);
+  const auto start = random_values(kFreedoms * kLaneBlock), sums = random_values(kLanes);
   LaneMoments moments;
   for (auto& m : moments.kernel)
     for (auto& i : m)
       for (double& v : i) v = random.uniform(-1, 1);
   for (auto& m : moments.angle)
     for (double& v : m) v = random.uniform(-1, 1);
-  const auto weight = random_values(10), block = random_values(kLaneBlock);
+  const auto weight = random_values(kPanelFreedoms), block = random_values(kLaneBlock);
   const auto run = [&](const LaneKernels& k) {
-    std::vector<double> nodes = start, total = sums;
-    k.three_points(panel, tables, constants, x, local, nodes.data(), total.data());
-    k.six_points(panel, tables, constants, x, nullptr, local, nodes.data(), total.data());
-    k.six_points(panel, tables, constants, x, mask, local, nodes.data(), total.data());
-    k.moments(panel, tables, moments, local, nodes.data(), total.data());
-    k.add_weighted(block.data(), weight.data(), local, nodes.data());
-    nodes.insert(nodes.end(), total.begin(), total.end());
-    return nodes;
+    std::vector<double> freedoms = start, total = sums;
+    k.three_points(panel, tables, constants, x, local, freedoms.data(), total.data());
+    k.six_points(panel, tables, constants, x, nullptr, local, freedoms.data(), total.data());
+    k.six_points(panel, tables, constants, x, mask, local, freedoms.data(), total.data());
+    k.moments(panel, tables, moments, local, freedoms.data(), total.data());
+    k.add_weighted(block.data(), weight.data(), local, freedoms.data());
+    freedoms.insert(freedoms.end(), total.begin(), total.end());
+    return freedoms;
   };
   expect_same(run(base), run(wide));
 }
 
 TEST_F(LanePair, AMaskedLaneAddsNothing) {
   for (const LaneKernels* k : {&baseline_lane_kernels(), &lane_kernels()}) {
-    std::vector<double> nodes(kNodes * kLaneBlock, 0), total(kLanes, 0);
-    k->six_points(panel, tables, constants, x, mask, local, nodes.data(), total.data());
-    for (std::size_t i = 0; i < nodes.size(); ++i) EXPECT_TRUE(mask[i % kLanes] > 0 || nodes[i] == 0) << i;
+    std::vector<double> freedoms(kFreedoms * kLaneBlock, 0), total(kLanes, 0);
+    k->six_points(panel, tables, constants, x, mask, local, freedoms.data(), total.data());
+    for (std::size_t i = 0; i < freedoms.size(); ++i) EXPECT_TRUE(mask[i % kLanes] > 0 || freedoms[i] == 0) << i;
     for (std::size_t i = 0; i < kLanes; ++i) EXPECT_EQ(total[i] == 0, mask[i] == 0);
   }
 }
 
-TEST(RobustOperator, GatherIsTheTransposedReconstruction) {
-  const SurfaceMesh mesh = make_sphere(0.6, 0.25);
-  const Boundary boundary(mesh, {});
-  const Reconstruction r(boundary.mesh, 0.3, {});
-  SourceBlockBuilder builder(boundary, r, false);
-  std::vector<std::uint32_t> panels;
-  for (std::uint32_t t = 20; t < 60; ++t) panels.push_back(t);
-  const SourceBlock block = builder.build(panels);
-  Random random(2);
-  std::vector<double> nodes(kLaneBlock * block.nodes.size());
-  for (double& v : nodes) v = random.uniform(-1, 1);
-  // Row i of the blocks is a load: vertex loads by the transpose of the reconstruction of the same panels.
-  std::vector<std::uint32_t> global(block.nodes.size());
-  for (std::size_t i = 0; i < panels.size(); ++i)
-    for (std::size_t a = 0; a < cubic::kNodes; ++a) global[block.local[i][a]] = r.nodes(panels[i])[a];
-  for (const LaneKernels* k : {&baseline_lane_kernels(), &lane_kernels()}) {
-    std::vector<double> corners(2 * kLaneBlock * block.corners.size()), out(kLaneBlock * mesh.vertex_count(), 0);
-    k->gather(block.gather(), nodes.data(), corners.data(), out.data());
-    for (std::size_t lane = 0; lane < kLanes; lane += 3)
-      for (std::size_t i = 0; i < 3; ++i) {
-        Vec3Column load(r.node_count());
-        for (std::size_t n = 0; n < global.size(); ++n) {
-          const double* b = nodes.data() + kLaneBlock * n + 3 * i * kLanes + lane;
-          load.add(global[n], {b[0], b[kLanes], b[2 * kLanes]});
-        }
-        const Vec3Column expected = r.apply_transpose(load);
-        for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
-          for (std::size_t j = 0; j < 3; ++j)
-            EXPECT_NEAR(out[kLaneBlock * v + (3 * i + j) * kLanes + lane], expected[v][static_cast<int>(j)], 1e-12);
+// Closed forms eight at a time are those one by one: near and far from a panel, in its plane, over it, on it, close to
+// its edges and corners, for slender panels too; lanes that are not asked for are zero.
+TEST(RobustOperator, ClosedFormsOfLanesAreThoseOfOneTarget) {
+  Random random(9);
+  const LaneConstants constants{0.3, 0.7, 0.9};
+  int asked_for = 0, left = 0;
+  for (const LaneKernels* kernels : {&baseline_lane_kernels(), &lane_kernels()})
+    for (int round = 0; round < 400; ++round) {
+      const Real height = round % 4 == 0 ? std::pow(10, -random.uniform(0, 3)) : random.uniform(0.4, 1);
+      const Vec3 shift = random_vector(random);
+      const PanelFrame f =
+          make_panel(shift, shift + Vec3{1, 0.1, 0.2}, shift + Vec3{random.uniform(0, 1), height, 0.3});
+      double x[3 * kLanes], on[kLanes], wanted[kLanes];
+      Vec3 target[kLanes];
+      Side side[kLanes];
+      bool asked[kLanes];
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const Real a = random.uniform(0, 1), b = random.uniform(0, 1 - a);
+        const Vec3 inside = f.vertex[0] * (1 - a - b) + f.vertex[1] * a + f.vertex[2] * b;
+        const Vec3 edge = f.vertex[0] * a + f.vertex[1] * (1 - a);
+        const Vec3 choices[] = {
+            f.centroid() + random_vector(random) * 2.0,       f.centroid() + random_vector(random) * 0.3, inside,
+            inside + f.normal * random.uniform(-1e-3, 1e-3),  edge + random_vector(random) * 1e-6,        f.vertex[1],
+            f.vertex[1] + f.tangent[0] * random.uniform(0, 2)};
+        const std::size_t choice = random.next() % 7;
+        target[k] = choices[choice];
+        side[k] = choice == 2 || choice == 5 ? Side::kOnSurface : Side::kAway;
+        asked[k] = random.uniform(0, 1) < 0.8;
+        for (std::size_t i = 0; i < 3; ++i) x[i * kLanes + k] = target[k][static_cast<int>(i)];
+        on[k] = side[k] == Side::kOnSurface ? 1 : 0, wanted[k] = asked[k] ? 1 : 0;
       }
-  }
+      LaneMoments lanes;
+      double rest[kLanes];
+      std::copy_n(wanted, kLanes, rest);
+      kernels->panel_moments(f, constants, x, on, rest, lanes);
+      for (std::size_t k = 0; k < kLanes; ++k) asked_for += asked[k], left += rest[k] > 0;
+      closed_forms(f, x, on, wanted, constants, *kernels, lanes);
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        PanelMoments one{};
+        if (asked[k]) integrate_panel_moments(f, target[k], side[k], one);
+        // As exact as the closed forms are: of the largest entry, for angles of 1 (moments.h).
+        const Real size = std::abs(one.inverse[0]);
+        for (std::size_t m = 0; m < kQuadraticMonomials; ++m) {
+          const Sym3& d = one.dyad[m];
+          const Real wanted_value[6] = {d.xx, d.yy, d.zz, d.yz, d.xz, d.xy};
+          for (std::size_t i = 0; i < 6; ++i)
+            ASSERT_NEAR(lanes.kernel[m][i][k], 0.7 * wanted_value[i] + (i < 3 ? 0.3 * one.inverse[m] : 0), 2e-11 * size)
+                << round << " " << k << " " << m << " " << i;
+        }
+        for (std::size_t m = 0; m < kCubicMonomials; ++m)
+          ASSERT_NEAR(lanes.angle[m][k], 0.9 * one.angle[m], 2e-11) << round << " " << k << " " << m;
+      }
+    }
+  EXPECT_LT(left, asked_for / 2);  // what the lanes leave to the one-by-one form: slender panels, edges
+}
+
+// A polynomial's value at node a of the cubic element.
+Real at_node(const cubic::Polynomial& p, std::size_t a) {
+  constexpr Real kCorner[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+  if (a == 9) return cubic::evaluate(p, 1.0 / 3, 1.0 / 3);
+  if (a < 3) return cubic::evaluate(p, kCorner[a][0], kCorner[a][1]);
+  const std::size_t e = (a - 3) / 2, next = (e + 1) % 3;
+  const Real l = a % 2 == 1 ? 1.0 / 3 : 2.0 / 3;
+  return cubic::evaluate(p, (1 - l) * kCorner[e][0] + l * kCorner[next][0],
+                         (1 - l) * kCorner[e][1] + l * kCorner[next][1]);
+}
+
+// Loads on the ten nodes of panels, handed to the panels' freedoms, reach the vertices as by the transpose of the
+// reconstruction from nodes: the freedoms are the same elements.
+TEST(RobustOperator, GatherIsTheTransposedReconstruction) {
+  for (const SurfaceMesh& mesh : {make_sphere(0.6, 0.25), make_box({1, 0.8, 0.9}, 0.2)})
+    for (const Element element : {Element::kCubic, Element::kLinear}) {
+      const Boundary boundary(mesh, {});
+      ReconstructionOptions options;
+      options.element = element;
+      const Reconstruction r(boundary.mesh, 0.3, options);
+      SourceBlockBuilder builder(boundary, r, false);
+      std::vector<std::uint32_t> panels;
+      for (std::uint32_t t = 20; t < 60; ++t) panels.push_back(t);
+      const SourceBlock block = builder.build(panels);
+      Random random(2);
+      std::vector<double> freedoms(kLaneBlock * block.freedoms, 0);
+      Vec3Column load[kLanes][3];  // row i of the blocks is a load
+      for (auto& rows : load)
+        for (Vec3Column& l : rows) l.resize(r.node_count());
+      for (std::size_t p = 0; p < panels.size(); ++p)
+        for (std::size_t a = 0; a < cubic::kNodes; ++a)
+          for (std::size_t e = 0; e < kLaneBlock; ++e) {
+            const std::size_t i = e / (3 * kLanes), j = e / kLanes % 3, lane = e % kLanes;
+            const Real value = random.uniform(-1, 1);
+            Vec3 one;
+            one[static_cast<int>(j)] = value;
+            load[lane][i].add(r.nodes(panels[p])[a], one);
+            for (std::size_t f = 0; f < kPanelFreedoms; ++f)
+              freedoms[kLaneBlock * block.local[p][f] + e] += value * at_node(cubic::kHermite[f], a);
+          }
+      for (const LaneKernels* k : {&baseline_lane_kernels(), &lane_kernels()}) {
+        std::vector<double> out(kLaneBlock * mesh.vertex_count(), 0);
+        k->gather(block.gather(), freedoms.data(), out.data());
+        for (std::size_t lane = 0; lane < kLanes; lane += 3)
+          for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3Column expected = r.apply_transpose(load[lane][i]);
+            for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+              for (std::size_t j = 0; j < 3; ++j)
+                EXPECT_NEAR(out[kLaneBlock * v + (3 * i + j) * kLanes + lane], expected[v][static_cast<int>(j)], 1e-12);
+          }
+      }
+    }
 }
 
 }  // namespace
