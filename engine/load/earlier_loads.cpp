@@ -69,24 +69,11 @@ Real share_of(const std::vector<Pairing>& pairs) {
   return size > 0 ? std::max(Real{0}, along / size) : 0;
 }
 
-// Contact forces summed up for tension_bound().
-class Sum {
- public:
-  Sum(const TriangleBvh& bvh, const BoundedLoad& spin) : bvh_(bvh), sum_(spin) { sum_.force = sum_.pressure = 0; }
-  void add(const SpreadContact& at, Real force) {
-    if (!(force > 0)) return;
-    sum_.force += force;
-    const BodyContact& c = at.contact;
-    const Real pressure = force / (std::numbers::pi * c.patch_radius * c.patch_radius);
-    if (pressure / kLeastSolidity > sum_.pressure)
-      sum_.pressure = std::max(sum_.pressure, pressure / solidity(bvh_, c.point, c.patch_radius));
-  }
-  const BoundedLoad& value() const { return sum_; }
-
- private:
-  const TriangleBvh& bvh_;
-  BoundedLoad sum_;
-};
+void add(BoundedLoad& sum, const SpreadContact& at, Real force) {
+  const Real r = at.contact.patch_radius;
+  sum.force += force;
+  sum.pressure = std::max(sum.pressure, force / (std::numbers::pi * r * r * at.solidity));
+}
 
 }  // namespace
 
@@ -94,7 +81,7 @@ std::vector<SpreadContact> spread(const SurfaceMesh& mesh, std::span<const BodyC
                                   const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh) {
   std::vector<SpreadContact> out;
   for (const BodyContact& c : contacts) {
-    SpreadContact s{c, {}};
+    SpreadContact s{c, solidity(bvh, c.point, c.patch_radius), {}};
     TractionPanels panels;
     append_panels(mesh, make_patch(mesh, twins, bvh, c.point, c.patch_radius, c.force), panels);
     Real whole = 0;
@@ -110,27 +97,26 @@ std::vector<SpreadContact> spread(const SurfaceMesh& mesh, std::span<const BodyC
   return out;
 }
 
-Real tension_bound(const BoundedBody& body, const TriangleBvh& bvh, std::span<const SpreadContact> contacts,
+Real tension_bound(const BoundedBody& body, std::span<const SpreadContact> contacts,
                    std::span<const SolvedLoad> earlier, const BoundedLoad& spin) {
-  Sum whole(bvh, spin);
-  for (const SpreadContact& c : contacts) whole.add(c, norm(c.contact.force));
-  Real least = tension_bound(body, whole.value());
+  BoundedLoad whole = spin;
+  for (const SpreadContact& c : contacts) add(whole, c, norm(c.contact.force));
+  Real least = tension_bound(body, whole);
   for (const SolvedLoad& solved : earlier) {
     std::vector<const SpreadContact*> gone;
     const std::vector<Pairing> pairs = pair_up(contacts, solved.contacts, gone);
     const Real share = share_of(pairs);
     if (share == 0) continue;
-    BoundedLoad spins = spin;  // about other axes, maybe: what they pull adds up
-    spins.spin = std::sqrt(spin.spin * spin.spin + share * solved.spin * solved.spin);
-    Sum rest(bvh, spins);
+    BoundedLoad rest = spin;  // about other axes, maybe: what the two pull adds up
+    rest.spin = std::sqrt(spin.spin * spin.spin + share * solved.spin * solved.spin);
     for (const Pairing& p : pairs) {
       const Vec3 before = p.before ? share * p.before->contact.force : Vec3{};
       const Real moved = p.moved * norm(before);
-      rest.add(*p.now, norm(p.now->contact.force - before) + moved);
-      if (p.before) rest.add(*p.before, moved);
+      add(rest, *p.now, norm(p.now->contact.force - before) + moved);
+      if (p.before) add(rest, *p.before, moved);
     }
-    for (const SpreadContact* c : gone) rest.add(*c, share * norm(c->contact.force));
-    least = std::min(least, share * solved.tension + tension_bound(body, rest.value()));
+    for (const SpreadContact* c : gone) add(rest, *c, share * norm(c->contact.force));
+    least = std::min(least, share * solved.tension + tension_bound(body, rest));
   }
   return least;
 }

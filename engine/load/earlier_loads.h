@@ -9,9 +9,11 @@
 
 namespace sherd {
 
-// A contact with the shares of its force that the faces of the mesh bear: by face, ascending, 1 together.
+// A contact with its place's solidity() and the shares of its force that the faces of the mesh bear: by face,
+// ascending, 1 together.
 struct SpreadContact {
   BodyContact contact;
+  Real solidity = 1;
   std::vector<std::pair<std::uint32_t, Real>> shares;
 };
 
@@ -27,9 +29,8 @@ struct SolvedLoad {
 
 // tension_bound() with what earlier loads of the body did: stress is linear in the load and the largest principal
 // stress of a sum is at most the sum of the largest ones, so a load causes at most `share` times what an earlier one
-// did and what the rest of it can. The least over `earlier` and none, Pa. `spin`: density and spin of the load; `bvh`:
-// of the body, for solidity().
-Real tension_bound(const BoundedBody& body, const TriangleBvh& bvh, std::span<const SpreadContact> contacts,
+// did and what the rest of it can. The least over `earlier` and none, Pa. `spin`: density and spin of the load.
+Real tension_bound(const BoundedBody& body, std::span<const SpreadContact> contacts,
                    std::span<const SolvedLoad> earlier, const BoundedLoad& spin);
 
 }  // namespace sherd

@@ -99,7 +99,7 @@ bool World::too_light(std::size_t i, Real force, Real pressure) const {
 bool World::too_light(std::size_t i, const std::vector<BodyContact>& loads) const {
   Solid& solid = *companions[i].solid;
   const std::vector<SpreadContact> spread_loads = spread(solid.mesh(), loads, solid.twins(), solid.bvh());
-  return tension_bound(solid.bounded(), solid.bvh(), spread_loads, companions[i].solved, spin_of(i)) + held_tension(i) <
+  return tension_bound(solid.bounded(), spread_loads, companions[i].solved, spin_of(i)) + held_tension(i) <
          needed_tension(i);
 }
 

@@ -21,7 +21,7 @@ struct Cube {
     return spread(mesh, contacts, twins, bvh);
   }
   Real bound(const std::vector<BodyContact>& contacts, const std::vector<SolvedLoad>& earlier, Real spin = 0) const {
-    return tension_bound(bounded, bvh, spread_on(contacts), earlier, {0, 0, 1000, spin});
+    return tension_bound(bounded, spread_on(contacts), earlier, {0, 0, 1000, spin});
   }
   std::vector<SolvedLoad> solved(const std::vector<BodyContact>& contacts, Real spin = 0) const {
     return {{spread_on(contacts), spin, kTension}};

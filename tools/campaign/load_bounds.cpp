@@ -119,7 +119,7 @@ void check_body(const BoundBody& body, std::uint64_t seed, std::span<BoundResult
     const RandomLoad random_one = solved.empty() ? random_load(solid, k / 2, random) : near(before, solid, random);
     const Real spin = norm(random_one.omega);
     const std::vector<SpreadContact> contacts = spread(*mesh, random_one.contacts, solid.twins(), solid.bvh());
-    r.bound = tension_bound(solid.bounded(), solid.bvh(), contacts, solved, {0, 0, kDensity, spin});
+    r.bound = tension_bound(solid.bounded(), contacts, solved, {0, 0, kDensity, spin});
     SurfaceLoad pull;
     pull.patches = contact_patches(*mesh, random_one.contacts, solid.twins(), solid.bvh());
     pull.omega = random_one.omega;
