@@ -246,7 +246,7 @@ Elastic elastic_of(const Body& body) {
 
 // A solve under contacts alone says what later contacts can do at most.
 void World::remember(std::size_t i, const EventRecord& event, const SolveRecord& solve) {
-  constexpr std::size_t kRemembered = 4;
+  constexpr std::size_t kRemembered = 16;
   Companion& companion = companions[i];
   companion.last_tension = solve.strongest.stress.value;
   if (event.applied_loads > 0) return;
