@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "engine/elastostatic/lane_kernels.h"
+#include "engine/stress/lane_gradients.h"
 #include "kernels/core/parallel.h"
 #include "kernels/fmm/plan.h"
 
@@ -23,6 +23,8 @@ constexpr double kFastPoints = 2000, kFastPairs = 4e8;
 constexpr Real kFastTolerance = 1e-5;
 // In roots of the panel's area: a source nearer contributes 1e4 times what is left once it has been taken out.
 constexpr Real kTouch = 1e-2;
+
+constexpr std::size_t kChunk = 768;  // sources of a direct sum that a task takes: a front asks at few points at once
 
 std::vector<Real> squared_reach(const Boundary& b, Real edges) {
   std::vector<Real> out;
@@ -79,29 +81,33 @@ void Somigliana::gradients(const Vec3Column& x, std::span<const std::uint32_t> f
   std::vector<std::uint32_t> left;
   for (std::uint32_t k = 0; k < x.size(); ++k)
     if (direct[k]) left.push_back(k);
-  parallel_for((left.size() + kLanes - 1) / kLanes, 1, [&](std::size_t group) {
-    const std::size_t first = group * kLanes, count = std::min(kLanes, left.size() - first);
-    const auto points = std::span<const std::uint32_t>(left).subspan(first, count);
-    direct_sums(x, points, out);
-    for (const std::uint32_t k : points) out[k] += correction(x[k], face[k], least2_);
+  const std::size_t chunks = (position_.size() + kChunk - 1) / kChunk;
+  sum_lanes(
+      lane_groups(left.size()), chunks,
+      [&](std::size_t group, std::size_t chunk, LaneGradients& part) {
+        direct_sum(LaneTargets(x, lane_group(left, group)), chunk, part);
+      },
+      [&](std::size_t group, const LaneGradients& total) {
+        const auto points = lane_group(left, group);
+        for (std::size_t k = 0; k < points.size(); ++k) out[points[k]] = lane(total, k);
+      });
+  parallel_for(left.size(), 1, [&](std::size_t i) {
+    const std::uint32_t k = left[i];
+    out[k] += correction(x[k], face[k], least2_);
   });
 }
 
-void Somigliana::direct_sums(const Vec3Column& x, std::span<const std::uint32_t> points, std::span<Mat3> out) const {
-  double target[3 * kLanes], sum[9 * kLanes] = {};
-  for (std::size_t k = 0; k < kLanes; ++k)
-    for (int i = 0; i < 3; ++i)
-      target[static_cast<std::size_t>(i) * kLanes + k] = x[points[k < points.size() ? k : 0]][i];
-  LaneElements s{{position_.x.data(), position_.y.data(), position_.z.data()},
-                 {density_.x.data(), density_.y.data(), density_.z.data()},
-                 {guenter_.x.data(), guenter_.y.data(), guenter_.z.data()},
-                 {},
-                 {normal_.x.data(), normal_.y.data(), normal_.z.data()},
-                 position_.size()};
-  for (std::size_t i = 0; i < 9; ++i) s.gradient[i] = gradient_[i].data();
-  lane_kernels().gradient_sum(s, material_.kelvin(), 3 - 4 * material_.nu, least2_, target, sum);
-  for (std::size_t k = 0; k < points.size(); ++k)
-    for (std::size_t i = 0; i < 9; ++i) out[points[k]].m[i / 3][i % 3] = sum[i * kLanes + k];
+void Somigliana::direct_sum(const LaneTargets& targets, std::size_t chunk, LaneGradients& sum) const {
+  const std::size_t first = chunk * kChunk;
+  const auto part = [&](const Vec3Column& c) {
+    return std::array{c.x.data() + first, c.y.data() + first, c.z.data() + first};
+  };
+  const auto y = part(position_), f = part(density_), g = part(guenter_), n = part(normal_);
+  LaneElements s{{y[0], y[1], y[2]}, {f[0], f[1], f[2]},
+                 {g[0], g[1], g[2]}, {},
+                 {n[0], n[1], n[2]}, std::min(kChunk, position_.size() - first)};
+  for (std::size_t i = 0; i < 9; ++i) s.gradient[i] = gradient_[i].data() + first;
+  lane_kernels().gradient_sum(s, material_.kelvin(), 3 - 4 * material_.nu, least2_, targets.x, sum.data());
 }
 
 // Row i of the gradient is that of Kelvin's layer and of M u_i / 4 pi l, and the curl of c_i / 4 pi l with

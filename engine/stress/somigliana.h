@@ -5,6 +5,7 @@
 
 #include "engine/elastostatic/panel_search.h"
 #include "engine/stress/element_field.h"
+#include "engine/stress/lane_gradients.h"
 
 namespace sherd {
 
@@ -21,8 +22,7 @@ class Somigliana {
                  FarSum sum = FarSum::kAutomatic) const;
 
  private:
-  // All sources at the points listed, up to kLanes.
-  void direct_sums(const Vec3Column& x, std::span<const std::uint32_t> points, std::span<Mat3> out) const;
+  void direct_sum(const LaneTargets& targets, std::size_t chunk, LaneGradients& sum) const;
   void fast_sums(const Vec3Column& x, std::span<Mat3> out) const;
   // What panels nearby add to the sums, of which they left out sources whose squared distance is not above `least`.
   Mat3 correction(const Vec3& x, std::uint32_t face, Real least) const;

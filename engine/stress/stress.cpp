@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/stress/layer_gradient.h"
 #include "engine/stress/near_surface.h"
 #include "kernels/core/parallel.h"
 #include "kernels/core/trace.h"
@@ -38,7 +37,7 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
       bvh_(bvh),
       particular_(particular),
       displacement_(solution.displacement),
-      load_traction_(load.panels.traction) {
+      load_gradients_(load.panels, body.material(), body.options().quadrature) {
   const Boundary& b = body.boundary();
   const std::size_t triangles = b.panels.size();
   Vec3Column nodes;
@@ -51,7 +50,6 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
   });
   somigliana_ = std::make_unique<Somigliana>(b, elements_, body.material(), body.options().quadrature);
   patch_load_.patches = load.patches;
-  for (const auto& c : load.panels.corners) load_panels_.push_back(make_panel(c[0], c[1], c[2]));
   // Recovered is what the particular solution leaves: of the corners of a faceted body neither the tangent plane nor
   // the traction is known exactly, and the mean stress is not to suffer from it.
   Vec3Column traction(recovery.corners().size());
@@ -82,12 +80,7 @@ StressState::StressState(const ElasticBody& body, const SurfaceRecovery& recover
 void StressState::displacement_gradients(const Vec3Column& x, std::span<const std::uint32_t> face,
                                          std::span<Mat3> out) const {
   somigliana_->gradients(x, face, out);
-  if (load_panels_.empty()) return;
-  parallel_for(x.size(), 8, [&](std::size_t k) {
-    for (std::size_t i = 0; i < load_panels_.size(); ++i)
-      out[k] +=
-          layer_gradient(load_panels_[i], x[k], load_traction_[i], body_.material(), body_.options().quadrature).kelvin;
-  });
+  load_gradients_.add(x, out);
 }
 
 Sym3 StressState::interior(const Vec3& x) const {

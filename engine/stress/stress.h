@@ -3,6 +3,7 @@
 #pragma once
 #include "engine/elastostatic/solver.h"
 #include "engine/mesh/bvh.h"
+#include "engine/stress/load_gradients.h"
 #include "engine/stress/somigliana.h"
 #include "engine/stress/stress_field.h"
 
@@ -46,8 +47,7 @@ class StressState final : public StressField {
   std::vector<ElementField> elements_;  // per triangle
   std::unique_ptr<Somigliana> somigliana_;
   Load patch_load_;  // the contact patches alone
-  std::vector<PanelFrame> load_panels_;
-  Vec3Column load_traction_;
+  LoadGradients load_gradients_;
 };
 
 }  // namespace sherd
