@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/load/patch.h"
+#include "kernels/core/parallel.h"
 
 namespace sherd {
 namespace {
@@ -79,9 +80,11 @@ void add(BoundedLoad& sum, const SpreadContact& at, Real force) {
 
 std::vector<SpreadContact> spread(const SurfaceMesh& mesh, std::span<const BodyContact> contacts,
                                   const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh) {
-  std::vector<SpreadContact> out;
-  for (const BodyContact& c : contacts) {
-    SpreadContact s{c, solidity(bvh, c.point, c.patch_radius), {}};
+  std::vector<SpreadContact> out(contacts.size());
+  parallel_for(contacts.size(), 1, [&](std::size_t k) {
+    const BodyContact& c = contacts[k];
+    SpreadContact& s = out[k];
+    s.contact = c, s.solidity = solidity(bvh, c.point, c.patch_radius);
     TractionPanels panels;
     append_panels(mesh, make_patch(mesh, twins, bvh, c.point, c.patch_radius, c.force), panels);
     Real whole = 0;
@@ -92,8 +95,7 @@ std::vector<SpreadContact> spread(const SurfaceMesh& mesh, std::span<const BodyC
       s.shares.back().second += force, whole += force;
     }
     for (auto& [face, share] : s.shares) share /= whole;
-    out.push_back(std::move(s));
-  }
+  });
   return out;
 }
 
