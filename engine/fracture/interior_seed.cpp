@@ -48,10 +48,13 @@ Vec3Column lattice(const TriangleBvh& body, Real spacing, Real depth) {
   return chosen;
 }
 
-// Of the samples within kPlateau of the largest, the one nearest to their centre; the first of equals.
+// Of the samples within kPlateau of the largest, the one nearest to their centre; the first of equals. Where all is
+// compressed, the first of the least.
 Sample largest(const std::vector<Sample>& samples) {
-  Real top = 0;
-  for (const Sample& s : samples) top = std::max(top, s.relative);
+  const auto less = [](const Sample& a, const Sample& b) { return a.relative < b.relative; };
+  const Sample& greatest = *std::max_element(samples.begin(), samples.end(), less);
+  const Real top = greatest.relative;
+  if (!(top > 0)) return greatest;
   const auto on_top = [&](const Sample& s) { return s.relative >= (1 - kPlateau) * top; };
   Vec3 sum;
   Real count = 0;

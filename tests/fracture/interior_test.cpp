@@ -39,6 +39,12 @@ TEST(InteriorSeed, IsTheTopOfTheStressWithinAnEighthOfTheSpacing) {
   EXPECT_EQ(seed->stress.direction, (Vec3{1, 0, 0}));
 }
 
+// Found by a random scene (seed 6102 of sherd-bench fuzz), which it brought down.
+TEST(InteriorSeed, ABodyUnderPressureThroughoutHasNone) {
+  const FunctionField pressed([](const Vec3& p) { return PrincipalStress{-1 - norm2(p), {1, 0, 0}}; });
+  EXPECT_FALSE(find_interior_seed(ball().bvh, pressed, *constant_field(1), {.spacing = 0.2, .depth = 0.1}));
+}
+
 TEST(InteriorSeed, StrengthDecidesAndTheSurfaceIsLeftToItsOwnSeeds) {
   const FunctionField uniform(constant_direction({0, 1, 0}));
   const auto find = [&](const ScalarField& strength, Real least, Real depth) {
