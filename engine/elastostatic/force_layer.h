@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/elastostatic/boundary.h"
+#include "engine/elastostatic/lane_targets.h"
 #include "engine/elastostatic/panel_rows.h"
 #include "engine/elastostatic/particular.h"
 #include "kernels/fmm/plan.h"
@@ -112,24 +113,15 @@ struct FewForces {
   LaneSources all() const { return {value[0], value[1], value[2], value[3], value[4], value[5], N}; }
 };
 
-// Eight targets, coordinates one after another, those beyond `count` repeating the first, and what is summed at them.
-struct Lanes {
-  std::size_t count;
-  double x[3 * kLanes], u[3 * kLanes] = {};
+// Eight targets and what is summed at them.
+struct Lanes : LaneTargets {
+  double u[3 * kLanes] = {};
   Vec3 centre;
   Real radius = 0;  // they lie within this distance of the centre
-  Box box;
 
-  Lanes(const Vec3Column& points, std::span<const std::uint32_t> of) : count(of.size()) {
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      const Vec3 p = points[of[k < count ? k : 0]];
-      box.grow(p);
-      for (std::size_t j = 0; j < 3; ++j) x[j * kLanes + k] = p[static_cast<int>(j)];
-    }
-    centre = box.centre();
+  Lanes(const Vec3Column& points, std::span<const std::uint32_t> of) : LaneTargets(points, of), centre(box.centre()) {
     for (std::size_t k = 0; k < count; ++k) radius = std::max(radius, distance(target(k), centre));
   }
-  Vec3 target(std::size_t k) const { return {x[k], x[kLanes + k], x[2 * kLanes + k]}; }
   Vec3 sum(std::size_t k) const { return {u[k], u[kLanes + k], u[2 * kLanes + k]}; }
   void add(std::size_t k, const Vec3& v) { u[k] += v.x, u[kLanes + k] += v.y, u[2 * kLanes + k] += v.z; }
 };

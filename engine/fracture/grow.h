@@ -21,6 +21,8 @@ struct CrackSeed {
   bool interior = false;         // a slit inside the body, all of it
 };
 
+inline constexpr int kRungCount = 5;  // of the retry ladder
+
 struct GrowthOptions {
   Real edge_length = 0;           // h: target edge of body and sheet, m
   Real propagation_strength = 0;  // Pa
@@ -28,7 +30,7 @@ struct GrowthOptions {
   Real speed = 0.5;               // the paper's alpha: step in units of h at the seed's stress; clamped to 0.4 .. 0.8
   Real overshoot = 0.15;          // of h: how far past the surface an exited node is placed
   int max_steps = 0;              // 0: 4 x (bounding-box diagonal / edge_length) + 64
-  int rungs = 5;                  // of the ladder to try, from the true field on
+  int rungs = kRungCount;         // of the ladder to try, from the true field on
   // When given, they take the place of the numbers above. Borrowed: they outlive the growth.
   const ScalarField* propagation_field = nullptr;
   const ScalarField* thickness_field = nullptr;
@@ -46,7 +48,6 @@ enum class GrowthOutcome { kComplete, kArrested, kRejectedSeed, kFailed };
 
 // Rung 0 follows the true field; 1 .. 4 blend it more and more towards the seed's plane, the last on a finer sheet
 // (O8).
-inline constexpr int kRungCount = 5;
 struct Rungs {
   std::array<std::string, kRungCount> reason;  // why each rung failed; empty when it succeeded or was not tried
 };

@@ -17,6 +17,7 @@ struct SpreadContact {
   std::vector<std::pair<std::uint32_t, Real>> shares;
 };
 
+// By contact. `twins` (build_twins()) and `bvh` of the mesh; parallel, the same bits for any number of threads.
 std::vector<SpreadContact> spread(const SurfaceMesh& mesh, std::span<const BodyContact> contacts,
                                   const std::vector<std::uint32_t>& twins, const TriangleBvh& bvh);
 

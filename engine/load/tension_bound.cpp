@@ -28,7 +28,8 @@ std::array<Vec3, 64> make_samples() {
 
 Real tension_bound(const BoundedBody& body, const BoundedLoad& load) {
   constexpr Real kMargin = 4, kSlender = 0.16, kNotch = 4;
-  // Of density (spin diagonal)^2; a disc has 0.1, a ring about its diameter bends with r R^3 / 4.
+  // Of density (spin diagonal)^2; a disc has 0.1, a ring of section A spun about its diameter bends
+  // with a moment of density A spin^2 R^3 / 4.
   constexpr Real kRotation = 0.25, kHoop = 0.5;
   const Real t = body.thickness, d = body.diagonal, notch = body.notched ? kNotch : 1;
   const Real bending = notch * load.force / (t * t) * (1 + kSlender * d / t), contact = load.pressure;

@@ -23,7 +23,7 @@ struct BoundedBody {
 // middle or at its end bends with M up to 0.15 F L, so its stress goes like F L / T^3; a plate under a point like
 // F / T^2; reentrant creases raise either three to four times (a body with a neck); around a contact the surface is
 // pulled by up to its mean pressure, at edges and with friction. Of 2016 solves on 24 bodies and 6048 on their shards
-// (tools/campaign/load_bounds.h) the largest stress over this is 0.71.
+// (tools/campaign/load_bounds.h) the largest stress over this is 0.74.
 Real tension_bound(const BoundedBody& body, const BoundedLoad& load);
 
 // How well the solid under a contact at `point` bears its pressure: s^1.5 where s is the solid's share of the half ball

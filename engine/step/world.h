@@ -58,8 +58,9 @@ struct World : RunState {
   std::vector<bool> acting_loads(std::size_t i) const;
   std::string cannot_break(std::size_t i) const;
   Real needed_tension(std::size_t i) const;  // Pa, for anything to happen
-  Real held_tension(std::size_t i) const;
-  BoundedLoad spin_of(std::size_t i) const;
+  Real held_tension(std::size_t i) const;    // Pa, what the scene's loads add to contacts
+  BoundedLoad spin_of(std::size_t i) const;  // a load of no contacts
+  // Whether contacts of `force` (N) together and `pressure` (Pa) at most, or these contacts, cannot break the body.
   bool too_light(std::size_t i, Real force, Real pressure) const;
   bool too_light(std::size_t i, const std::vector<BodyContact>& loads) const;
   // What is to be done about body i in this step.

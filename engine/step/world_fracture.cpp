@@ -78,7 +78,6 @@ Real World::needed_tension(std::size_t i) const {
   return (companions[i].solid->partial.empty() ? fields.strength : fields.propagation_strength)->lower();
 }
 
-// What the scene's loads add to contacts, Pa; and what the body's spin is.
 Real World::held_tension(std::size_t i) const {
   const std::vector<bool> acting = acting_loads(i);
   return std::find(acting.begin(), acting.end(), true) != acting.end() ? companions[i].last_tension : 0;
@@ -89,7 +88,6 @@ BoundedLoad World::spin_of(std::size_t i) const {
   return {0, 0, body.mass.mass / body.mass.volume, norm(body.angular_velocity)};
 }
 
-// Contacts of `force` (N) together and `pressure` (Pa) at most.
 bool World::too_light(std::size_t i, Real force, Real pressure) const {
   BoundedLoad load = spin_of(i);
   load.force = force, load.pressure = pressure;

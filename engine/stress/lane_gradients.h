@@ -6,8 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/elastostatic/lane_kernels.h"
-#include "kernels/core/column.h"
+#include "engine/elastostatic/lane_targets.h"
 #include "kernels/core/parallel.h"
 #include "kernels/core/symmetric.h"
 
@@ -15,18 +14,6 @@ namespace sherd {
 
 // Entry i of the gradient of lane k at [i * kLanes + k].
 using LaneGradients = std::array<double, 9 * kLanes>;
-
-// Up to eight targets, coordinates one after another; those beyond `count` repeat the first.
-struct LaneTargets {
-  std::size_t count;
-  double x[3 * kLanes];
-
-  LaneTargets(const Vec3Column& points, std::span<const std::uint32_t> of) : count(of.size()) {
-    for (std::size_t k = 0; k < kLanes; ++k)
-      for (int i = 0; i < 3; ++i) x[static_cast<std::size_t>(i) * kLanes + k] = points[of[k < count ? k : 0]][i];
-  }
-  Vec3 operator[](std::size_t k) const { return {x[k], x[kLanes + k], x[2 * kLanes + k]}; }
-};
 
 inline std::size_t lane_groups(std::size_t targets) {
   return (targets + kLanes - 1) / kLanes;

@@ -47,10 +47,8 @@ void LoadGradients::add(const Vec3Column& x, std::span<Mat3> out) const {
   };
   const auto add_chunk = [&](std::size_t group, std::size_t chunk, LaneGradients& sum) {
     const LaneTargets targets(x, lane_group(all, group));
-    Box box;
-    for (std::size_t k = 0; k < targets.count; ++k) box.grow(targets[k]);
-    const Vec3 centre = box.centre();
-    const Real radius = 0.5 * box.diagonal();
+    const Vec3 centre = targets.box.centre();
+    const Real radius = 0.5 * targets.box.diagonal();
     const std::size_t last = std::min((chunk + 1) * kChunk, panels_.size());
     std::size_t begin = chunk * kChunk;  // of a run of panels that are far from all of the targets
     for (std::size_t i = begin; i < last; ++i) {
@@ -59,7 +57,7 @@ void LoadGradients::add(const Vec3Column& x, std::span<Mat3> out) const {
       add_far(targets, begin, i, sum);
       begin = i + 1;
       for (std::size_t k = 0; k < targets.count; ++k) {
-        const Mat3 g = layer_gradient(panels_[i], targets[k], traction_[i], material_, options_).kelvin;
+        const Mat3 g = layer_gradient(panels_[i], targets.target(k), traction_[i], material_, options_).kelvin;
         for (std::size_t j = 0; j < 9; ++j) sum[j * kLanes + k] += g.m[j / 3][j % 3];
       }
     }

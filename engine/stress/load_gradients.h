@@ -11,9 +11,9 @@ namespace sherd {
 class LoadGradients {
  public:
   LoadGradients(const TractionPanels& panels, const Elastic& material, const QuadratureOptions& options);
-  // Adds [i][k] = u_i,k at points that lie on no panel, or on its edges clamped. Each panel as layer_gradient.h has it,
-  // those that are far from eight points at once in vector registers. Parallel; the same bits for any number of
-  // threads.
+  // Adds [i][k] = u_i,k (no unit), one a point, at points that lie on no panel, or on its edges clamped. Each panel as
+  // layer_gradient.h has it, those that are far from eight points at once in vector registers. Parallel; the same bits
+  // for any number of threads.
   void add(const Vec3Column& x, std::span<Mat3> out) const;
 
  private:

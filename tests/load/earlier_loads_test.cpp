@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "engine/mesh/bvh.h"
 #include "engine/mesh/shapes.h"
 
 namespace sherd {
 namespace {
 
+// Bounds are sums of a few terms of some 10 Pa: 1e-9 is far above their rounding, far below what is told apart.
 constexpr Real kTension = 7;  // Pa, of the earlier load: made up, far below what its bound alone would say
 
 struct Cube {

@@ -130,7 +130,6 @@ void check_body(const BoundBody& body, std::uint64_t seed, std::span<BoundResult
     if (!solution.ok) continue;
     const StressState state(elastic, solid.recovery(), solid.bvh(), load, particular, solution);
     r.tension = strongest_point(*mesh, solid.recovery(), state, *one).stress.value;
-
     solved = {{contacts, spin, std::max(Real{0}, r.tension)}};
     before = random_one;
   }
