@@ -69,6 +69,21 @@ int side_of_line(const Vec3& o, const Vec3& d, const Vec3& p, const Vec3& q) {
   return sign != 0 ? sign : perturbed_side(d, p, q);
 }
 
+Vec3 closest_point_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const Real along = dot(ab, p - a), length2 = norm2(ab);
+  if (along <= 0) return a;
+  return along >= length2 ? b : a + ab * (along / length2);
+}
+
+// Of a triangle without area.
+Vec3 closest_point_on_edges(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  Vec3 best = closest_point_on_segment(p, a, b);
+  for (const Vec3& q : {closest_point_on_segment(p, b, c), closest_point_on_segment(p, c, a)})
+    if (distance2(p, q) < distance2(p, best)) best = q;
+  return best;
+}
+
 }  // namespace
 
 Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -79,15 +94,18 @@ Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, cons
   const Real d3 = dot(ab, bp), d4 = dot(ac, bp);
   if (d3 >= 0 && d4 <= d3) return b;
   const Real vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 / (d1 - d3));
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) return a + ab * (d1 / (d1 - d3));
   const Vec3 cp = p - c;
   const Real d5 = dot(ab, cp), d6 = dot(ac, cp);
   if (d6 >= 0 && d5 <= d6) return c;
   const Real vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 / (d2 - d6));
+  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) return a + ac * (d2 / (d2 - d6));
   const Real va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-  const Real s = 1 / (va + vb + vc);
+  const Real from_b = d4 - d3, from_c = d5 - d6;
+  if (va <= 0 && from_b >= 0 && from_c >= 0 && from_b + from_c > 0) return b + (c - b) * (from_b / (from_b + from_c));
+  const Real sum = va + vb + vc;
+  if (!(sum > 0)) return closest_point_on_edges(p, a, b, c);
+  const Real s = 1 / sum;
   return a + ab * (vb * s) + ac * (vc * s);
 }
 

@@ -1,11 +1,16 @@
-// STL, glTF and 3DS through assimp; no other file includes it.
+// STL, glTF and 3DS through assimp; no other file includes it. It reads in a process of its own, for files can be
+// damaged so that it crashes (found by tools/fuzz; assimp 5.2).
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <filesystem>
 
 #include "engine/mesh/load_raw.h"
+#include "kernels/core/archive.h"
+#include "kernels/core/child.h"
 #include "kernels/core/error.h"
 
 namespace sherd {
@@ -73,9 +78,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-}  // namespace
-
-SurfaceMesh read_assimp(const std::string& path, std::vector<std::string>& messages) {
+SurfaceMesh read_here(const std::string& path, std::vector<std::string>& messages) {
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr)
@@ -88,6 +91,46 @@ SurfaceMesh read_assimp(const std::string& path, std::vector<std::string>& messa
   if (collector.other_faces > 0) messages.push_back(fmt::format("left out {} points and lines", collector.other_faces));
   if (collector.textured) collector.mesh.channels = {{"uv", 2, std::move(collector.uv)}};
   return std::move(collector.mesh);
+}
+
+struct Reading {
+  SurfaceMesh mesh;
+  std::vector<std::string> messages;
+  std::string error;  // of an InputError
+};
+
+// Processor time, s, beyond which a file is taken to be damaged: some thousand times what assimp needs.
+unsigned patience(const std::string& path) {
+  std::error_code none;
+  const auto bytes = std::filesystem::file_size(path, none);
+  return 10 + static_cast<unsigned>(std::min<std::uintmax_t>(none ? 0 : bytes / 100'000, 3600));
+}
+
+}  // namespace
+
+SurfaceMesh read_assimp(const std::string& path, std::vector<std::string>& messages) {
+  const ChildResult child = run_in_child(
+      [&] {
+        Reading r;
+        try {
+          r.mesh = read_here(path, r.messages);
+        } catch (const InputError& e) {
+          r.error = e.what();
+        }
+        Archive a;
+        archive(a, r);
+        return a.take();
+      },
+      patience(path));
+  if (!child.died.empty())
+    throw InputError(
+        fmt::format("{}: the file is damaged: reading it ended in {}; export the file again", path, child.died));
+  Reading r;
+  Archive a(child.bytes);
+  archive(a, r);
+  if (!r.error.empty()) throw InputError(r.error);
+  messages.insert(messages.end(), r.messages.begin(), r.messages.end());
+  return std::move(r.mesh);
 }
 
 }  // namespace sherd

@@ -123,5 +123,15 @@ TEST(TriangleBvhBoxes, OverlapQueriesEqualBruteForce) {
   EXPECT_EQ(pairs, expected);
 }
 
+// Files hold them until repair. A point at 0 / 0 brought down a reader (tools/fuzz).
+TEST(Bvh, TrianglesWithoutAreaHaveAClosestPoint) {
+  const Vec3 a{0, 0, 0}, b{1, 2, 3}, c{0.4, 0.8, 1.2}, p{0.3, 0.1, 2};
+  const std::array<std::array<Vec3, 3>, 5> flat{{{a, a, b}, {a, b, b}, {a, b, a}, {a, c, b}, {c, a, b}}};
+  const Real along = dot(p, b) / norm2(b);
+  for (const auto& [x, y, z] : flat)
+    EXPECT_LT(distance(closest_point_on_triangle(p, x, y, z), b * along), 1e-14) << x.x << y.x << z.x;
+  EXPECT_EQ(closest_point_on_triangle(p, c, c, c), c);
+}
+
 }  // namespace
 }  // namespace sherd

@@ -7,50 +7,10 @@ namespace {
 
 using FuzzScene = SceneFile;
 
-const std::string kEverything = R"(gravity = [0, -9.81, 0]
-time_step = 0.001
-duration = 2.5
-[[body]]
-name = "pot"
-shape = {kind = "hollow_sphere", radius = 0.1, inner_radius = 0.05}
-edge_length = 0.01
-rotation = {axis = [0, 0, 1], angle = 30}
-velocity = [0, -1, 0]
-colour = "#ff8800"
-[body.material]
-preset = "glass"
-strength = {kind = "noise", mean = 3e7, amplitude = 0.4, wavelength = 0.02, seed = 7, lognormal = true}
-propagation_strength = {kind = "grains", mean = 1e6, size = 0.01, spread = 0.2, boundary = 0.5, width = 0.05}
-crack_thickness = {kind = "layers", axis = [0, 0, 2], offsets = [0.1, 0.2], values = [1e-4, 2e-4, 3e-4], blend = 0.01}
-[[body.crack]]
-kind = "plane"
-point = [0, 0.1, 0]
-normal = [1, 0, 0]
-depth = 0.05
-time = 0.5
-[[body.crack]]
-kind = "polyline"
-points = [[-0.1, 0, 0.1], [0, 0.01, 0.1], [0.1, 0, 0.1]]
-inward = [0, 0, -1]
-[[body.notch]]
-kind = "plane"
-point = [0, 0.1, 0]
-normal = [1, 0, 0]
-depth = 0.02
-width = 0.004
-[[load]]
-body = "pot"
-region = {low = [-1, 0.05, -1], high = [1, 1, 1]}
-facing = [0, 1, 0]
-force = [0, 10, 0]
-moment = [0, 2, 0]
-from = 0.1
-until = 0.2
-[fracture]
-rounds = 3
-interior_seeds = true
-dust = "keep"
-)";
+std::string everything() {
+  std::ifstream file(SHERD_SOURCE "/tests/scene/everything.toml");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
 
 // One edit: a line dropped, doubled or moved, or a piece of a line replaced by a piece that stands elsewhere.
 std::string edited(std::string text, Random& random) {
@@ -77,11 +37,12 @@ std::string edited(std::string text, Random& random) {
 }
 
 TEST_F(FuzzScene, EditsAreReadOrRefused) {
-  ASSERT_EQ(problem(kEverything), "");
+  const std::string whole = everything();
+  ASSERT_EQ(problem(whole), "");
   Random random(11);
   int read = 0, refused = 0;
   for (int i = 0; i < 3000; ++i) {
-    std::string text = kEverything;
+    std::string text = whole;
     for (std::uint64_t edits = 1 + random.next() % 3; edits > 0; --edits) text = edited(std::move(text), random);
     const std::filesystem::path file = write("scene.toml", text);
     try {
