@@ -45,13 +45,15 @@ std::vector<Vec3> read_points(TableReader& reader) {
 
 GuidePolyline read_polyline(TableReader& reader) {
   GuidePolyline line{.points = read_points(reader), .inward = require_direction(reader, "inward")};
+  const TomlValue* inward = reader.find("inward");
+  if (inward == nullptr) return line;
   // Below two degrees the swept surface would fold over itself at the least bend of the line.
   constexpr Real kLeastSine = 0.035;
   for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
     const Vec3 along = normalized(line.points[i + 1] - line.points[i]);
     if (norm2(along) == 0 || norm(cross(along, line.inward)) > kLeastSine) continue;
     reader.problems().refuse(
-        *reader.find("inward"), reader.path("inward"),
+        *inward, reader.path("inward"),
         fmt::format("direction: off the line; between points {} and {} it lies along it", i, i + 1));
     break;
   }

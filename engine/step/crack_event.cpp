@@ -145,7 +145,7 @@ void CrackEvent::break_ligament(Piece& piece, const CrackField& field, Grown& gr
   if (net.stress < net.strength) return;
   const GrowthResult& stopped = grown.result;
   net.through.ladder_level = std::max(net.through.ladder_level, stopped.ladder_level);
-  net.through.steps += stopped.steps;
+  net.through.steps += stopped.steps, net.through.retreats += stopped.retreats;
   net.through.wings.insert(net.through.wings.end(), stopped.wings.begin(), stopped.wings.end());
   if (net.through.reason.empty()) net.through.reason = stopped.reason;
   for (std::size_t k = 0; k < stopped.rungs.reason.size(); ++k)
@@ -158,6 +158,7 @@ void CrackEvent::commit(std::size_t index, Grown&& grown, CrackRecord& record, s
   CutResult& c = grown.cut;
   record.generation = options_.generation;
   record.ladder_level = g.ladder_level, record.steps = g.steps, record.area = g.area, record.length = g.length;
+  record.retreats = g.retreats, record.wings = g.wings.size();
   record.reason = g.reason, record.rungs = g.rungs;
   if (g.outcome == GrowthOutcome::kRejectedSeed || g.outcome == GrowthOutcome::kFailed) {
     record.outcome = g.outcome == GrowthOutcome::kFailed ? "failed" : "rejected";

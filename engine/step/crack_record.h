@@ -23,6 +23,8 @@ struct CrackRecord {
   // the body is bit-identical after the last two.
   std::string outcome, reason;
   int ladder_level = 0, steps = 0;
+  int retreats = 0;                         // see GrowthResult
+  std::size_t wings = 0;                    // parts beyond a handle or cavity that it left to go on by themselves
   Rungs rungs;                              // why each failed
   Real edge_length = 0;                     // of the sheet, m: the mesh's, or a finer one where a wall asks for it
   SheetQuality sheet;                       // of its triangles; empty when rejected or failed

@@ -74,6 +74,8 @@ Json crack_json(const CrackRecord& c) {
          {"outcome", c.outcome},
          {"ladder_level", c.ladder_level},
          {"steps", c.steps},
+         {"retreats", c.retreats},
+         {"wings", c.wings},
          {"edge_length", c.edge_length},
          {"area", c.area},
          {"length", c.length},

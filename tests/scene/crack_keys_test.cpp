@@ -256,6 +256,9 @@ TEST_F(CrackKeys, ImpossibleGuidesAreRefused) {
   EXPECT_EQ(crack("kind = \"polyline\"\npoints = [[0, 0, 0], [0, 0, 2]]\ninward = [0, 0, 1]\n"),
             "scene.toml:7:10: body.crack.inward: value [0, 0, 1] not allowed; allowed direction: off the line; between "
             "points 0 and 1 it lies along it");
+  // The direction that stands in for a missing one lies along this line.
+  EXPECT_EQ(crack("kind = \"polyline\"\npoints = [[0, 0, 0], [0, 2, 0], [0, 2, 1], [1, 2, 1]]\n"),
+            "scene.toml:4:1: body.crack.inward: missing; allowed range: a direction [x, y, z], not zero");
   EXPECT_EQ(crack("kind = \"surface\"\nmesh = \"none.obj\"\n"),
             "scene.toml:6:8: body.crack.mesh: value \"none.obj\" not allowed; allowed files: one that exists (none.obj "
             "does not)");
