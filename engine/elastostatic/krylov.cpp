@@ -79,12 +79,13 @@ struct Hessenberg {
 
 namespace {
 
-// One cycle: minimises over x + M^-1 K and leaves the true residual b - A x in r and result.residual.
+// One cycle: minimises over x + M^-1 K and leaves the true residual b - A x in r and result.residual. What the
+// preconditioner gave for each basis vector is kept when it is `flexible`, for it would give another sum for their sum.
 void gmres_cycle(const LinearOperator& a, const Preconditioner& m, std::span<const Real> b, std::span<Real> x,
                  const KrylovOptions& options, Real scale, Vector& r, KrylovResult& result) {
   const std::size_t n = a.size();
   Vector z(n);
-  std::vector<Vector> basis;
+  std::vector<Vector> basis, preconditioned;
   Hessenberg h;
   h.rhs.assign(1, result.residual * scale);
   for (Real& v : r) v /= h.rhs[0];
@@ -93,6 +94,7 @@ void gmres_cycle(const LinearOperator& a, const Preconditioner& m, std::span<con
     precondition(m, basis.back(), z);
     Vector w(n);
     a.apply(z, w);
+    if (options.flexible) preconditioned.push_back(z);
     ++result.products, ++result.iterations;
     Vector column(basis.size() + 1);
     for (std::size_t i = 0; i < basis.size(); ++i) {
@@ -110,10 +112,14 @@ void gmres_cycle(const LinearOperator& a, const Preconditioner& m, std::span<con
     basis.push_back(std::move(w));
   }
   const Vector y = h.solve();
-  std::fill(r.begin(), r.end(), 0);
-  for (std::size_t i = 0; i < y.size(); ++i) add_scaled(r, y[i], basis[i]);
-  precondition(m, r, z);
-  add_scaled(x, 1, z);
+  if (options.flexible) {
+    for (std::size_t i = 0; i < y.size(); ++i) add_scaled(x, y[i], preconditioned[i]);
+  } else {
+    std::fill(r.begin(), r.end(), 0);
+    for (std::size_t i = 0; i < y.size(); ++i) add_scaled(r, y[i], basis[i]);
+    precondition(m, r, z);
+    add_scaled(x, 1, z);
+  }
   result.residual = residual(a, b, x, r, scale);
   ++result.products;
 }

@@ -11,6 +11,9 @@ enum class KrylovStatus { kConverged, kMaxIterations, kBreakdown };
 struct KrylovOptions {
   Real tolerance = 1e-4;  // of |b - A x| / |b|
   int max_iterations = 300;
+  // For a preconditioner that is linear but for its rounding, where that counts: triangular factors of a nearly
+  // singular operator in single precision. Doubles the memory (Saad 1993).
+  bool flexible = false;
 };
 struct KrylovResult {
   KrylovStatus status = KrylovStatus::kConverged;

@@ -165,7 +165,9 @@ KrylovResult ElasticBody::iterate(std::span<const Real> b, std::span<Real> x, bo
                             options_.preconditioning == Preconditioning::kDeflation || !factor()))
     return total;
   factored = true;
-  attempt([&](auto r, auto z) { factored_->apply(r, z); }, options_.krylov);
+  KrylovOptions flexible = options_.krylov;
+  flexible.flexible = true;
+  attempt([&](auto r, auto z) { factored_->apply(r, z); }, flexible);
   return total;
 }
 

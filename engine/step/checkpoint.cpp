@@ -19,7 +19,7 @@ constexpr const char* kAnew = "start anew, without --resume";
 struct Header {
   std::array<char, 8> magic{'s', 'h', 'e', 'r', 'd', 'r', 'u', 'n'};
   std::uint32_t byte_order = 0x01020304;
-  std::uint32_t format = 1;  // raise it when the layout of a file changes
+  std::uint32_t format = 2;  // raise it when the layout of a file changes
   static constexpr std::size_t kBytes = 16;
 };
 
