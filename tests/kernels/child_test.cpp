@@ -59,5 +59,15 @@ TEST(Child, EndlessWorkIsStopped) {
   EXPECT_EQ(r.died, "too much time or memory");
 }
 
+TEST(Child, ACrashIsSeenWhereTheParentIgnoresItsChildren) {
+  const auto before = std::signal(SIGCHLD, SIG_IGN);
+  const ChildResult crashed = run_in_child([]() -> std::string { std::abort(); }, 60),
+                    whole = run_in_child([] { return std::string("bytes"); }, 60);
+  std::signal(SIGCHLD, before);
+  EXPECT_NE(crashed.died, "");
+  EXPECT_EQ(whole.died, "");
+  EXPECT_EQ(whole.bytes, "bytes");
+}
+
 }  // namespace
 }  // namespace sherd
