@@ -103,8 +103,10 @@ Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, cons
   const Real va = d3 * d6 - d5 * d4;
   const Real from_b = d4 - d3, from_c = d5 - d6;
   if (va <= 0 && from_b >= 0 && from_c >= 0 && from_b + from_c > 0) return b + (c - b) * (from_b / (from_b + from_c));
-  const Real sum = va + vb + vc;
-  if (!(sum > 0)) return closest_point_on_edges(p, a, b, c);
+  // The area squared; of a triangle without area the sum of what was rounded away.
+  const Real sum = va + vb + vc, rounded = 0x1p-44 * (std::abs(d1 * d4) + std::abs(d3 * d2) + std::abs(d5 * d2) +
+                                                      std::abs(d1 * d6) + std::abs(d3 * d6) + std::abs(d5 * d4));
+  if (!(sum > rounded)) return closest_point_on_edges(p, a, b, c);
   const Real s = 1 / sum;
   return a + ab * (vb * s) + ac * (vc * s);
 }

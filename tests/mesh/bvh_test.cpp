@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 
 #include "engine/mesh/shapes.h"
@@ -125,12 +127,20 @@ TEST(TriangleBvhBoxes, OverlapQueriesEqualBruteForce) {
 
 // Files hold them until repair. A point at 0 / 0 brought down a reader (tools/fuzz).
 TEST(Bvh, TrianglesWithoutAreaHaveAClosestPoint) {
-  const Vec3 a{0, 0, 0}, b{1, 2, 3}, c{0.4, 0.8, 1.2}, p{0.3, 0.1, 2};
-  const std::array<std::array<Vec3, 3>, 5> flat{{{a, a, b}, {a, b, b}, {a, b, a}, {a, c, b}, {c, a, b}}};
-  const Real along = dot(p, b) / norm2(b);
-  for (const auto& [x, y, z] : flat)
-    EXPECT_LT(distance(closest_point_on_triangle(p, x, y, z), b * along), 1e-14) << x.x << y.x << z.x;
-  EXPECT_EQ(closest_point_on_triangle(p, c, c, c), c);
+  Random random(3);
+  const auto point = [&] { return Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; };
+  for (int n = 0; n < 3000; ++n) {
+    // Three points of a line, of which two may be one, and the closest of the stretch from the first to the last.
+    const Vec3 origin = point(), along = point(), p = point() * 3;
+    std::array<Real, 3> at{0, 0.25 * static_cast<Real>(random.next() % 5), 1};
+    std::rotate(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(random.next() % 3), at.end());
+    const Vec3 a = origin + along * at[0], b = origin + along * at[1], c = origin + along * at[2];
+    const Vec3 closest = origin + along * std::clamp(dot(along, p - origin) / norm2(along), 0.0, 1.0);
+    // The corners are a rounding off the line, which may tilt the stretch by 2^-53 of p's distance.
+    EXPECT_LT(distance(closest_point_on_triangle(p, a, b, c), closest), 1e-14) << n;
+  }
+  const Vec3 c{0.4, 0.8, 1.2};
+  EXPECT_EQ(closest_point_on_triangle({0.3, 0.1, 2}, c, c, c), c);
 }
 
 }  // namespace
