@@ -99,7 +99,7 @@ struct Reading {
   std::string error;  // of an InputError
 };
 
-// Processor time, s, beyond which a file is taken to be damaged: some thousand times what assimp needs.
+// Processor time, s, beyond which a file is taken to be damaged; assimp reads many times as fast.
 unsigned patience(const std::string& path) {
   std::error_code none;
   const auto bytes = std::filesystem::file_size(path, none);

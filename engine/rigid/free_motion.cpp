@@ -7,7 +7,7 @@ namespace {
 
 constexpr Real kTurn = 0.25;  // rad at a time
 constexpr int kMaxTurns = 4096;
-constexpr int kMaxRounds = 30;  // of Newton's method, which needs four
+constexpr int kMaxRounds = 30;  // of Newton's method: needles take up to 17, or all where rounding keeps changes large
 
 // The m with m = x - h/2 w(m) x m, where w(m) = I^-1 m: the mean of x and of x turned back by the Cayley map of h w(m).
 // Newton's method, since a fixed point diverges for needles: a trace of m along the axis, where the inertia is small,

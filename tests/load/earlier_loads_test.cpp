@@ -11,7 +11,6 @@
 namespace sherd {
 namespace {
 
-// Bounds are sums of a few terms of some 10 Pa: 1e-9 is far above their rounding, far below what is told apart.
 constexpr Real kTension = 7;  // Pa, of the earlier load: made up, far below what its bound alone would say
 
 struct Cube {
@@ -55,6 +54,7 @@ TEST(EarlierLoads, ALoadIsBoundedByItsMultipleOfTheSameLoad) {
   const Cube cube;
   const std::vector<SolvedLoad> earlier = cube.solved({on_top(0.2, 3), on_top(-0.2, 2)});
   ASSERT_GT(cube.bound({on_top(0.2, 3), on_top(-0.2, 2)}, {}), 10 * kTension);
+  // Sums of a few terms of some 10 Pa, here and below: 1e-9 is far above their rounding, far below what is told apart.
   EXPECT_NEAR(cube.bound({on_top(0.2, 3), on_top(-0.2, 2)}, earlier), kTension, 1e-9);
   EXPECT_NEAR(cube.bound({on_top(0.2, 6), on_top(-0.2, 4)}, earlier), 2 * kTension, 1e-9);
 }
