@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/skip.h"
 #include "kernels/core/error.h"
 #include "kernels/core/parallel.h"
 #include "tools/bench/cracks.h"
@@ -190,31 +191,38 @@ CLI::App* add_cracks(CLI::App& app, CracksCommand& c) {
 
 CLI::App* add_scenes(CLI::App& app, sherd::bench::ScenesOptions& o) {
   using sherd::bench::SceneStudy;
-  static const std::map<std::string, SceneStudy> studies{{"table", SceneStudy::kTable},
-                                                         {"threads", SceneStudy::kThreads},
-                                                         {"skips", SceneStudy::kSkips},
-                                                         {"error", SceneStudy::kError}};
-  CLI::App* scenes =
-      app.add_subcommand("scenes", "whole scenes: the paper's Table 3, threads, skipping, accuracy settings");
+  static const std::map<std::string, SceneStudy> studies{
+      {"table", SceneStudy::kTable}, {"skips", SceneStudy::kSkips}, {"error", SceneStudy::kError}};
+  CLI::App* scenes = app.add_subcommand("scenes", "whole scenes: the paper's Table 3, skipping, accuracy settings");
   scenes->add_option("--scene", o.scenes, "names in the folder, or files (default: the paper's five)");
   scenes
-      ->add_option(
-          "--study", o.studies,
-          "table, threads, skips (each switch off in turn), error (each quality against the finest); default: table")
+      ->add_option("--study", o.studies,
+                   "table, skips (each switch off in turn), error (each quality against the finest); default: table")
       ->transform(CLI::CheckedTransformer(studies));
   const auto quality = CLI::IsMember({"preview", "default", "fine"});
-  scenes->add_option("--quality", o.quality, "of table, threads and skips")->check(quality)->capture_default_str();
+  scenes->add_option("--quality", o.quality, "of table and skips")->check(quality)->capture_default_str();
   scenes->add_option("--finest", o.finest, "reference of the error study")->check(quality)->capture_default_str();
   scenes->add_option("--frames", o.frames, "of each run (default: all)")->check(CLI::PositiveNumber);
-  scenes->add_option("--threads", o.threads)->check(CLI::Range(1, 1024))->capture_default_str();
+  scenes->add_option("--threads", o.threads, "a run of the table each; the other studies take the last")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  scenes
+      ->add_option("--off", o.off,
+                   "switches the skips study turns off, each alone; all: together (default: everything)")
+      ->check(CLI::IsMember([] {
+        std::vector<std::string> keys{"all"};
+        for (const sherd::SkipSwitch& s : sherd::kSkipSwitches) keys.emplace_back(s.key);
+        return keys;
+      }()));
   scenes->add_option("--folder", o.folder, "of the scenes")->capture_default_str();
   scenes->add_option("--program", o.program, "the command sherd (default: beside this program)");
   scenes->add_option("--plots", o.plots, "folder for the error study's plots")->check(CLI::ExistingDirectory);
   scenes->add_option("--json", o.json, "file for the numbers");
   scenes->footer(
-      "Examples:\n  sherd-bench scenes --json out.json\n  sherd-bench scenes --scene dinner_table --study skips "
+      "Examples:\n  sherd-bench scenes --json out.json\n  sherd-bench scenes --scene glass_goblet --threads 2\n  "
+      "sherd-bench scenes --scene dinner_table --study skips "
       "--quality "
-      "preview --frames 8\n  sherd-bench scenes --study error --finest default --plots .");
+      "preview --frames 3\n  sherd-bench scenes --study error --finest default --plots .");
   return scenes;
 }
 

@@ -1,4 +1,5 @@
-// Whole scenes: where the time goes beside the paper's Table 3, what accuracy costs, what skipping saves.
+// Whole scenes: where the time goes beside the paper's Table 3 and what more threads save, what accuracy costs, what
+// skipping saves.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -6,17 +7,18 @@
 
 namespace sherd::bench {
 
-enum class SceneStudy { kTable, kThreads, kSkips, kError };
+enum class SceneStudy { kTable, kSkips, kError };
 
 struct ScenesOptions {
   std::vector<std::string> scenes;  // names of files in `folder`, or files; empty: the paper's five
   std::vector<SceneStudy> studies;  // empty: table
   std::string folder = "scenes";
-  std::string quality = "default";  // of table, threads and skips
+  std::string quality = "default";  // of table and skips
   std::string finest = "fine";      // of the error study, whose reference it is
   int frames = 0;                   // of every run; 0: the scene's duration
-  int threads = 2;
-  std::string program;  // the command `sherd`; empty: beside this one
+  std::vector<int> threads{1, 2};   // the table's runs; the other studies run with the last
+  std::vector<std::string> off;     // rows of the skips study: switches, "all"; empty: each in turn, then all
+  std::string program;              // the command `sherd`; empty: beside this one
   std::string json;
   std::string plots;  // folder for the error study's plots, one a scene
 };
@@ -55,7 +57,6 @@ SceneNumbers scene_numbers(const nlohmann::json& stats);
 
 // The studies; each prints its table and returns its part of the JSON file. `failed` is set when a run failed.
 nlohmann::json scene_table(const ScenesOptions& options, const std::vector<std::string>& scenes, bool& failed);
-nlohmann::json scene_threads(const ScenesOptions& options, const std::vector<std::string>& scenes, bool& failed);
 nlohmann::json scene_skips(const ScenesOptions& options, const std::vector<std::string>& scenes, bool& failed);
 nlohmann::json scene_errors(const ScenesOptions& options, const std::vector<std::string>& scenes, bool& failed);
 

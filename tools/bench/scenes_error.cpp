@@ -118,7 +118,7 @@ json scene_errors(const ScenesOptions& o, const std::vector<std::string>& scenes
               "stress%", "solves");
   for (const std::string& scene : scenes) {
     std::vector<SceneRun> runs;
-    for (const std::string& q : qualities) runs.push_back(run_scene(o, scene, q, o.threads));
+    for (const std::string& q : qualities) runs.push_back(run_scene(o, scene, q, o.threads.back()));
     if (std::any_of(runs.begin(), runs.end(), [](const SceneRun& r) { return r.exit_code != 0; })) {
       failed = true;
       std::printf("%-14s a run failed\n", scene.c_str());

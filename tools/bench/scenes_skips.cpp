@@ -15,6 +15,14 @@ std::string outcome(const nlohmann::json& stats) {
                      stats["totals"]["crack_outcomes"].dump());
 }
 
+std::vector<std::string> rows_of(const ScenesOptions& o) {
+  if (!o.off.empty()) return o.off;
+  std::vector<std::string> keys;
+  for (const SkipSwitch& s : kSkipSwitches) keys.emplace_back(s.key);
+  keys.emplace_back("all");
+  return keys;
+}
+
 }  // namespace
 
 nlohmann::json scene_skips(const ScenesOptions& o, const std::vector<std::string>& scenes, bool& failed) {
@@ -23,10 +31,11 @@ nlohmann::json scene_skips(const ScenesOptions& o, const std::vector<std::string
     std::printf(
         "\nWhat skipping saves in %s (%s, %d frames, %d threads): CPU seconds against all switches on.\n%-16s %9s %8s "
         "%12s %12s  %s\n",
-        scene.c_str(), o.quality.c_str(), o.frames, o.threads, "off", "CPU s", "ratio", "done", "skipped", "outcome");
+        scene.c_str(), o.quality.c_str(), o.frames, o.threads.back(), "off", "CPU s", "ratio", "done", "skipped",
+        "outcome");
     double all_on = 0;
     const auto row = [&](const char* name, const std::vector<std::string>& off) {
-      const SceneRun run = run_scene(o, scene, o.quality, o.threads, off);
+      const SceneRun run = run_scene(o, scene, o.quality, o.threads.back(), off);
       if (run.exit_code != 0) {
         failed = true;
         std::printf("%-16s failed with exit code %d\n", name, run.exit_code);
@@ -48,8 +57,7 @@ nlohmann::json scene_skips(const ScenesOptions& o, const std::vector<std::string
                       {"outcome", outcome(run.stats)}});
     };
     row("nothing", {});
-    for (const SkipSwitch& s : kSkipSwitches) row(s.key, {s.key});
-    row("everything", {"all"});
+    for (const std::string& key : rows_of(o)) row(key.c_str(), {key});
   }
   return rows;
 }
