@@ -13,6 +13,9 @@ struct Contact {
   // Filled by the rigid stage:
   Real approach_speed = 0;  // normal closing speed before the solve, m/s, >= 0
   Vec3 impulse;             // on a (b gets the opposite), N s, world, normal and friction part together
+  // The point in the coordinates of a's mesh and of b's (not of the ground) when it was found: bodies move on until the
+  // step ends, farther than walls are thick.
+  Vec3 at_a, at_b;
 };
 
 }  // namespace sherd

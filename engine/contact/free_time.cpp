@@ -19,6 +19,11 @@ struct Scales {
   Real touching() const { return std::clamp(wall, kTouchingShare * size, 2 * kTouchingShare * size); }
 };
 
+Scales scales(const ContactCache& cache, const Body& a, const Body* b) {
+  const ContactCache::Bounds &own = cache.bounds(a), &other = cache.bounds(b ? *b : a);
+  return {std::min(own.thickness, other.thickness), std::min(own.box.diagonal(), other.box.diagonal())};
+}
+
 Body flown(const Body& b, bool rests, const Vec3& gravity, Real t) {
   Body moved = b;
   if (rests) return moved;
@@ -70,29 +75,31 @@ std::vector<FastPair> fast_pairs(std::span<const Body> bodies, const GroundPlane
   const std::vector<Proxy> proxies = make_proxies(bodies, cache, sweep.time);
   const Real fall = norm(gravity) * sweep.time;
   std::vector<FastPair> fast;
-  const auto consider = [&](std::uint32_t a, std::uint32_t b, Real speed, const Scales& scales) {
-    if (speed * sweep.time > scales.coarse()) fast.push_back({a, b, speed, scales});
+  const auto consider = [&](std::uint32_t a, std::uint32_t b, Real speed, const Scales& s) {
+    if (speed * sweep.time > s.coarse()) fast.push_back({a, b, speed, s});
   };
   const auto velocity = [&](std::uint32_t i) { return sweep.rests(bodies, i) ? Vec3{} : bodies[i].velocity; };
   const auto spin = [&](std::uint32_t i) { return proxies[i].speed - norm(velocity(i)); };
   for (const auto& [a, b] : near_pairs(bodies, proxies, sweep)) {
     const bool alike = !sweep.rests(bodies, a) && !sweep.rests(bodies, b);  // they fall alike
     consider(a, b, norm(velocity(a) - velocity(b)) + spin(a) + spin(b) + (alike ? 0 : fall),
-             {std::min(cache.bounds(bodies[a]).thickness, cache.bounds(bodies[b]).thickness),
-              std::min(proxies[a].diagonal, proxies[b].diagonal)});
+             scales(cache, bodies[a], &bodies[b]));
   }
   const auto plane = static_cast<std::uint32_t>(bodies.size());
   for (std::uint32_t i = 0; ground.enabled && i < plane; ++i) {
     const Proxy& p = proxies[i];
     const Real reach = p.reach + fall * sweep.time + sweep.margin * p.diagonal;
     if (sweep.rests(bodies, i) || p.box.low.y > ground.height + reach) continue;
-    // Nothing is thin against the ground.
-    consider(i, plane, std::max(0.0, -bodies[i].velocity.y) + spin(i) + fall, {p.diagonal, p.diagonal});
+    consider(i, plane, std::max(0.0, -bodies[i].velocity.y) + spin(i) + fall, scales(cache, bodies[i], nullptr));
   }
   return fast;
 }
 
 }  // namespace
+
+Real coarse_motion(const ContactCache& cache, const Body& a, const Body* b) {
+  return scales(cache, a, b).coarse();
+}
 
 FreeTime free_time(std::span<const Body> bodies, const GroundPlane& ground, const FreeTimeOptions& options,
                    ContactCache& cache) {
@@ -105,7 +112,7 @@ FreeTime free_time(std::span<const Body> bodies, const GroundPlane& ground, cons
   cache.build(bodies, needed);
   std::vector<Passage> passages(fast.size());
   parallel_for(fast.size(), 1, [&](std::size_t n) {
-    const auto& [a, b, speed, scales] = fast[n];
+    const auto& [a, b, speed, size] = fast[n];
     const auto at = [&](std::uint32_t i, Real t) {
       return flown(bodies[i], sweep.rests(bodies, i), options.gravity, t);
     };
@@ -114,7 +121,7 @@ FreeTime free_time(std::span<const Body> bodies, const GroundPlane& ground, cons
       if (b == plane) return height_over(moved, ground.height, limit);
       return gap_between(cache.shape(bodies[a]), cache.shape(bodies[b]), placement(moved, at(b, t)), limit);
     };
-    passages[n] = passage(gap, speed, scales, options.margin * scales.size, options.time);
+    passages[n] = passage(gap, speed, size, options.margin * size.size, options.time);
   });
   FreeTime free{options.time, {}};
   for (const Passage& p : passages) free.time = std::min(free.time, p.time);

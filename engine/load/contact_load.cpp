@@ -53,8 +53,8 @@ BodyContact body_contact(const Body& body, const Body* other, const Contact& con
   const bool heavy = other == nullptr || other->fixed;
   const Real mass = heavy ? body.mass.mass : body.mass.mass * other->mass.mass / (body.mass.mass + other->mass.mass);
   BodyContact c;
-  c.point = to_material(body, contact.point);
   const bool first = contact.a == body.id;
+  c.point = first ? contact.at_a : contact.at_b;
   const Vec3 impulse = first ? contact.impulse : -contact.impulse;
   // A contact that only carries load closes with at most the speed one step of free fall adds (about g dt, 1 cm/s).
   const Real resting_speed = 2 * 9.81 * options.time_step;

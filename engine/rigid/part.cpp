@@ -16,6 +16,7 @@ constexpr int kNewborn = 3;  // steps in which siblings do not bounce
 // Of the solves, relative to the fastest approach. Few bodies have Newton's method; in heaps a thousandth of what a
 // step of gravity or the hardest impact gives is left, which moves nothing by a micrometre.
 constexpr Real kTolerance = 1e-5, kHeapTolerance = 1e-3;
+constexpr Real kTogether = 1e-4;   // of the pair's size, the way left to points that bounce with the first
 constexpr Real kRounding = 1e-13;  // of velocities, relative to the fastest body
 
 struct Part {
@@ -26,6 +27,8 @@ struct Part {
   std::vector<ContactRow> rows = {};  // of the impact, one a contact
   std::vector<Real> approach = {};    // normal velocity before the impact, m/s
   std::vector<char> meets = {};       // the bodies touch, or meet within the part
+  std::vector<Real> closing = {};     // mean normal velocity within the part, negative; of those that meet, m/s
+  std::vector<Real> soonest = {};     // s, before which a point met later than the pair's first need not be; else 0
 };
 
 Real friction(const StepWorld& w, const Contact& c) {
@@ -50,12 +53,14 @@ void make_rows(Part& p) {
   const StepWorld& w = p.world;
   const std::vector<Motion> motions = w.motions();
   const std::size_t n = p.contacts.size();
-  p.rows.assign(n, {}), p.approach.resize(n), p.meets.resize(n);
+  p.rows.assign(n, {}), p.approach.resize(n), p.meets.resize(n), p.closing.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const Contact& c = p.contacts[i];
+    Contact& c = p.contacts[i];
     ContactRow& r = p.rows[i];
     const bool plane = c.b == kGround;
     r.a = w.index.at(c.a), r.b = plane ? static_cast<std::uint32_t>(w.bodies.size()) : w.index.at(c.b);
+    c.at_a = to_material(w.bodies[r.a], c.point);
+    if (!plane) c.at_b = to_material(w.bodies[r.b], c.point);
     r.arm_a = c.point - w.bodies[r.a].pose.position;
     r.arm_b = plane ? Vec3{} : c.point - w.bodies[r.b].pose.position;
     r.axis[0] = c.normal;
@@ -66,7 +71,41 @@ void make_rows(Part& p) {
     // Both fall alike unless one is held.
     const bool a_falls = motions[r.a].inverse_mass > 0, b_falls = motions[r.b].inverse_mass > 0;
     const Real pull = dot(c.normal, w.options.gravity) * ((a_falls ? 1 : 0) - (b_falls ? 1 : 0));
-    p.meets[i] = c.depth >= 0 || c.depth >= p.time * (p.approach[i] + 0.5 * p.time * std::min(0.0, pull));
+    p.closing[i] = p.approach[i] + 0.5 * p.time * std::min(0.0, pull);
+    p.meets[i] = c.depth >= 0 || c.depth >= p.time * p.closing[i];
+  }
+}
+
+// The points of a pair that meet first bounce, and with them those that have then next to no way left (a box that lands
+// flat). Others may never be met once it bounces: a plate that lands on its rim would be struck all over. Contacts are
+// sorted by pair.
+void find_first(Part& p, Real floor) {
+  const StepWorld& w = p.world;
+  const std::size_t n = p.contacts.size();
+  p.soonest.assign(n, 0);
+  for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
+    const Contact& pair = p.contacts[begin];
+    while (end < n && p.contacts[end].a == pair.a && p.contacts[end].b == pair.b) ++end;
+    Real first = p.time, fastest = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!p.meets[i]) continue;
+      first = std::min(first, p.contacts[i].depth >= 0 ? 0 : p.contacts[i].depth / p.closing[i]);
+      fastest = std::max(fastest, -p.closing[i]);
+    }
+    const Real size = w.pair_size(pair);
+    for (std::size_t i = begin; i < end; ++i)
+      if (p.meets[i] && first * p.closing[i] - p.contacts[i].depth > kTogether * size)
+        p.soonest[i] = std::min(p.time, std::max(floor, w.options.margin * size / fastest));
+  }
+}
+
+// The part ends where a point is met that did not bounce with the first.
+void end_at_next(Part& p) {
+  const std::vector<Motion> motions = p.world.motions();
+  for (std::size_t i = 0; i < p.rows.size(); ++i) {
+    if (p.soonest[i] == 0) continue;
+    const Real v = normal_velocity(motions, p.rows[i]), depth = p.contacts[i].depth;
+    if (depth > p.time * v) p.time = std::min(p.time, std::max(p.soonest[i], depth / v));
   }
 }
 
@@ -139,8 +178,8 @@ void limit_energy(const IslandProblem& start, IslandProblem& problem, std::vecto
   problem.rows = std::move(rows), after = std::move(motions);
 }
 
-// A solve that ends above its tolerance may push too far, or rub along the motion: impulses scaled down until they do no
-// work (in the worst case to none for this part) do not. What then penetrates is pushed out by displacement.
+// A solve that ends above its tolerance may push too far, or rub along the motion: impulses scaled down until they do
+// no work (in the worst case to none for this part) do not. What then penetrates is pushed out by displacement.
 void limit_push(const IslandProblem& start, std::span<const Motion> before, IslandProblem& problem,
                 std::vector<Motion>& after) {
   if (work(problem.rows, before, after) <= 0) return;
@@ -160,8 +199,8 @@ bool solve_impact(Part& p, RigidStats& stats) {
   const RigidOptions& o = w.options;
   for (std::size_t i = 0; i < p.rows.size(); ++i) {
     const Contact& c = p.contacts[i];
-    if (!p.meets[i])
-      p.rows[i].target = c.depth / p.time;  // a gap may close but not further
+    if (!p.meets[i] || p.soonest[i] > 0)
+      p.rows[i].target = c.depth / (p.meets[i] ? p.soonest[i] : p.time);  // a gap may close but not further
     else
       p.rows[i].target = -p.approach[i] > o.restitution_speed ? -p.approach[i] * restitution(w, c) : 0;
   }
@@ -300,8 +339,12 @@ PartResult step_part(StepWorld& world, Real remaining, Real floor, RigidStats& s
   const FreeTime free = free_part(world, remaining, floor);
   Part p{world, free.time, free.apart};
   find_contacts(p, stats);
+  find_first(p, floor);
   // Who bounces may fly fast towards others.
-  if (solve_impact(p, stats)) p.time = free_part(world, p.time, floor).time;
+  if (solve_impact(p, stats)) {
+    p.time = free_part(world, p.time, floor).time;
+    end_at_next(p);
+  }
   std::vector<Pose> start;
   for (const Body& b : world.bodies) start.push_back(b.pose);
   move_all(world, 0.5 * p.time);

@@ -18,7 +18,7 @@ void collect(const StepWorld& world, const std::vector<Contact>& part, std::vect
     const Real near = kSamePlace * world.pair_size(c);
     const auto last = all.begin() + static_cast<std::ptrdiff_t>(earlier);
     const auto same = std::find_if(all.begin(), last, [&](const Contact& o) {
-      return o.a == c.a && o.b == c.b && distance2(o.point, c.point) < near * near;
+      return o.a == c.a && o.b == c.b && distance2(o.at_a, c.at_a) < near * near;
     });
     if (same == last) {
       all.push_back(c);

@@ -53,7 +53,7 @@ struct World : RunState {
 
   // What pulls.
   ContactLoadOptions load_options() const;
-  Real curvature_at(BodyId id, const Vec3& world_point);
+  Real curvature_at(BodyId id, const Vec3& point);  // in material space
   std::vector<BodyContact> loads_on(std::size_t i);
   std::vector<bool> acting_loads(std::size_t i) const;
   std::string cannot_break(std::size_t i) const;

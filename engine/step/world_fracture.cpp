@@ -41,10 +41,9 @@ ContactLoadOptions World::load_options() const {
   return o;
 }
 
-Real World::curvature_at(BodyId id, const Vec3& world_point) {
-  const std::size_t i = index_of(id);
-  Solid& solid = *companions[i].solid;
-  return curvature_radius(solid.mesh(), solid.twins(), solid.bvh(), to_material(bodies[i], world_point));
+Real World::curvature_at(BodyId id, const Vec3& point) {
+  Solid& solid = *companions[index_of(id)].solid;
+  return curvature_radius(solid.mesh(), solid.twins(), solid.bvh(), point);
 }
 
 std::vector<BodyContact> World::loads_on(std::size_t i) {
@@ -52,9 +51,10 @@ std::vector<BodyContact> World::loads_on(std::size_t i) {
   const Body& body = bodies[i];
   for (const Contact& c : contacts) {
     if ((c.a != body.id && c.b != body.id) || norm2(c.impulse) == 0) continue;
-    const BodyId other = c.a == body.id ? c.b : c.a;
-    Real radius = curvature_at(body.id, c.point);
-    if (other != kGround) radius = 1 / (1 / radius + 1 / curvature_at(other, c.point));
+    const bool first = c.a == body.id;
+    const BodyId other = first ? c.b : c.a;
+    Real radius = curvature_at(body.id, first ? c.at_a : c.at_b);
+    if (other != kGround) radius = 1 / (1 / radius + 1 / curvature_at(other, first ? c.at_b : c.at_a));
     loads.push_back(body_contact(body, other == kGround ? nullptr : &bodies[index_of(other)], c, radius,
                                  companions[i].solid->diagonal(), load_options()));
   }

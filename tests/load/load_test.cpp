@@ -118,12 +118,13 @@ TEST(BodyContact, DurationIsHertzAboveTheFloorAndTheStepAtRest) {
   body.material.young = 1e7;  // soft, so that the Hertz time is long
   body.mass = mass_properties(*body.mesh, 1000);
   Contact c;
-  c.a = body.id, c.b = kGround, c.impulse = {0, 2, 0}, c.approach_speed = 2;
+  c.a = body.id, c.b = kGround, c.impulse = {0, 2, 0}, c.approach_speed = 2, c.at_a = {0, -0.1, 0};
   ContactLoadOptions options;
   const BodyContact soft = body_contact(body, nullptr, c, 0.1, 0.3, options);
   EXPECT_NEAR(soft.duration,
               hertz_duration(body.mass.mass, 0.1, effective_modulus(1e7, body.material.poisson, 0, 0), 2), 1e-12);
   EXPECT_NEAR(norm(soft.force), 2 / soft.duration, 1e-9);
+  EXPECT_EQ(soft.point, c.at_a);  // where they met, not where the body went since
   body.material.young = 70e9;
   EXPECT_DOUBLE_EQ(body_contact(body, nullptr, c, 0.1, 0.3, options).duration, options.min_duration);
   options.min_duration = 1e-6;
