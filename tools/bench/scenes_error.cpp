@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 
 #include "kernels/core/vec3.h"
 #include "tools/bench/plot.h"
@@ -24,6 +25,7 @@ struct Outcome {
   std::string first_body;
   double first_stress = 0;  // largest of the event, Pa
   std::size_t pieces = 0;
+  double loaded_until() const { return cracked ? first_time : std::numeric_limits<double>::infinity(); }
   std::vector<double> share;  // of each body at the end of the volume of all, descending
 };
 
@@ -63,16 +65,17 @@ double volume_distance(const Outcome& a, const Outcome& b) {
   return sum / 2;
 }
 
-// Largest stress of every event until `time`, in their order; the rms of the differences over the rms of the reference.
-double stress_distance(const json& a, const json& b, double time) {
-  const auto history = [&](const json& stats) {
+// Largest stress of every event up to the one that cracks first, in their order; the rms of the differences over the
+// rms of the reference. To each its own first crack: steps of different length see the same impact at different times.
+double stress_distance(const json& a, double first_a, const json& b, double first_b) {
+  const auto history = [&](const json& stats, double first) {
     std::vector<double> h;
     for (const json& event : stats["events"])
-      if (event.contains("solve") && event["time"].get<double>() <= time + 1e-9)
+      if (event.contains("solve") && event["time"].get<double>() <= first + 1e-9)
         h.push_back(event["solve"]["max_principal"]);
     return h;
   };
-  const std::vector<double> x = history(a), y = history(b);
+  const std::vector<double> x = history(a, first_a), y = history(b, first_b);
   double difference = 0, size = 0;
   for (std::size_t i = 0; i < std::max(x.size(), y.size()); ++i) {
     const double p = i < x.size() ? x[i] : 0, q = i < y.size() ? y[i] : 0;
@@ -139,7 +142,7 @@ json scene_errors(const ScenesOptions& o, const std::vector<std::string>& scenes
                {"volumes", at.share},
                {"first_crack", {{"body", at.first_body}, {"time", at.first_time}, {"stress", at.first_stress}}}};
       const double volume = volume_distance(at, finest),
-                   stress = stress_distance(run.stats, runs.back().stats, finest.first_time);
+                   stress = stress_distance(run.stats, at.loaded_until(), runs.back().stats, finest.loaded_until());
       if (&run != &runs.back()) {
         row["volume_error"] = volume, row["stress_error"] = stress;
         row["time_error_s"] = std::abs(at.first_time - finest.first_time);
