@@ -26,8 +26,8 @@ struct FreeTime {
 // The time until the first pair that moves fast comes within the margin, by conservative advancement of each pair
 // (Mirtich and Canny 1995): the gap over the bound on the speed at which it can close is free. A pair is fast when it
 // moves more than coarse_motion() within options.time; slower ones cannot tunnel. Nothing asks for steps in which it
-// moves less than that. Pairs that touch already may move by a wall, within
-// 5 and 10 % of the size. Builds the shapes of fast pairs; the cache knows the bodies.
+// moves less than that. Pairs that touch already may move by a wall, within 5 and 10 % of the size. Builds the shapes
+// of fast pairs; the cache knows the bodies.
 FreeTime free_time(std::span<const Body> bodies, const GroundPlane& ground, const FreeTimeOptions& options,
                    ContactCache& cache);
 

@@ -1,6 +1,9 @@
 // O7: ears close notches, bridges join fronts that meet (paper fig. 12), a small loop is filled. Nodes are never
 // welded: welding makes pinch nodes.
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
 
 #include "engine/fracture/front.h"
 
@@ -100,12 +103,23 @@ bool bridge_nearest(Growth& g) {
     Real distance2;
     std::size_t a, b;
   };
+  // A sweep along x: only ends within reach of each other there are compared.
+  const Real reach = kBridge * g.h;
+  std::vector<std::size_t> along(ends.size());
+  std::iota(along.begin(), along.end(), std::size_t{0});
+  std::stable_sort(along.begin(), along.end(),
+                   [&](std::size_t a, std::size_t b) { return ends[a].middle.x < ends[b].middle.x; });
   std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < ends.size(); ++i)
-    for (std::size_t j = i + 1; j < ends.size(); ++j)
-      if (distance2(ends[i].middle, ends[j].middle) < kBridge * kBridge * g.h * g.h && may_bridge(g, ends[i], ends[j]))
-        pairs.push_back({distance2(ends[i].middle, ends[j].middle), i, j});
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) { return x.distance2 < y.distance2; });
+  for (std::size_t s = 0; s < along.size(); ++s)
+    for (std::size_t t = s + 1; t < along.size(); ++t) {
+      const auto [i, j] = std::minmax(along[s], along[t]);
+      if (std::abs(ends[j].middle.x - ends[i].middle.x) > reach) break;
+      const Real d2 = distance2(ends[i].middle, ends[j].middle);
+      if (d2 < reach * reach && may_bridge(g, ends[i], ends[j])) pairs.push_back({d2, i, j});
+    }
+  std::sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) {
+    return std::tie(x.distance2, x.a, x.b) < std::tie(y.distance2, y.a, y.b);
+  });
   return std::any_of(pairs.begin(), pairs.end(), [&](const Pair& p) { return bridge(g, ends[p.a], ends[p.b]); });
 }
 

@@ -2,11 +2,12 @@
 //
 // The step is cut where fast bodies meet (free_time), so nothing tunnels. In each part, of length h, the velocities see
 // two contact problems. *Impact*, at the poses of its start: where a pair touches, or first meets within h, it bounces
-// with Newton's restitution; the part ends before the points it would meet later, if the bounce lets it. *Push*, at the poses of its middle: gravity, and what keeps bodies apart, so that no gap at the end is
-// negative. Between, bodies fly freely. Every impulse acts on both bodies at one common point of one time, hence linear
-// and angular momentum are kept to rounding; the work of an impulse is its product with the mean of the velocities
-// before and after, which is never positive for either problem, and free motion keeps the energy to rounding, hence
-// energy never grows (engine/rigid/energy.h). What penetrates all the same is pushed out by displacement alone.
+// with Newton's restitution; the part ends before the points it would meet later, if the bounce lets it. *Push*, at the
+// poses of its middle: gravity, and what keeps bodies apart, so that no gap at the end is negative. Between, bodies fly
+// freely. Every impulse acts on both bodies at one common point of one time, hence linear and angular momentum are kept
+// to rounding; the work of an impulse is its product with the mean of the velocities before and after, which is never
+// positive for either problem, and free motion keeps the energy to rounding, hence energy never grows
+// (engine/rigid/energy.h). What penetrates all the same is pushed out by displacement alone.
 #pragma once
 #include <span>
 #include <vector>

@@ -202,7 +202,8 @@ CLI::App* add_scenes(CLI::App& app, sherd::bench::ScenesOptions& o) {
   const auto quality = CLI::IsMember({"preview", "default", "fine"});
   scenes->add_option("--quality", o.quality, "of table and skips")->check(quality)->capture_default_str();
   scenes->add_option("--finest", o.finest, "reference of the error study")->check(quality)->capture_default_str();
-  scenes->add_option("--frames", o.frames, "of each run (default: all)")->check(CLI::PositiveNumber);
+  scenes->add_option("--frames", o.frames, "of each run; in the error study as counted at `default` (default: all)")
+      ->check(CLI::PositiveNumber);
   scenes->add_option("--threads", o.threads, "a run of the table each; the other studies take the last")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

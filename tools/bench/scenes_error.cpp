@@ -8,7 +8,9 @@
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <string_view>
 
+#include "engine/scene/scene.h"
 #include "kernels/core/vec3.h"
 #include "tools/bench/plot.h"
 #include "tools/bench/scenes.h"
@@ -107,11 +109,26 @@ void plot(const ScenesOptions& o, const std::string& scene, const json& rows) {
   write_svg(p, o.plots + "/" + scene + ".svg");
 }
 
+// Settings differ in frames a second; runs to be compared end with a frame at one time, the first one that all have
+// and that is not before frame `o.frames` at `default`. 0: all frames.
+std::vector<int> frame_counts(const ScenesOptions& o, const std::string& scene,
+                              const std::vector<std::string>& qualities) {
+  const auto rate = [&](Quality q) { return load_scene(scene_file(o, scene), q).frame_rate; };
+  std::vector<Real> rates;
+  for (std::size_t q = 0; q < qualities.size(); ++q) rates.push_back(rate(static_cast<Quality>(q)));
+  const Real slowest = *std::min_element(rates.begin(), rates.end());
+  const Real spans = std::ceil((o.frames - 1) * slowest / rate(Quality::kDefault) - 1e-9);
+  std::vector<int> counts;
+  for (const Real r : rates)
+    counts.push_back(o.frames > 0 ? static_cast<int>(std::lround(spans * r / slowest)) + 1 : 0);
+  return counts;
+}
+
 }  // namespace
 
 json scene_errors(const ScenesOptions& o, const std::vector<std::string>& scenes, bool& failed) {
-  std::vector<std::string> qualities;
-  for (const char* q : {"preview", "default", "fine"}) {
+  std::vector<std::string> qualities;  // in the order of Quality
+  for (const std::string_view q : kQualityNames) {
     qualities.emplace_back(q);
     if (o.finest == q) break;
   }
@@ -121,7 +138,12 @@ json scene_errors(const ScenesOptions& o, const std::vector<std::string>& scenes
               "stress%", "solves");
   for (const std::string& scene : scenes) {
     std::vector<SceneRun> runs;
-    for (const std::string& q : qualities) runs.push_back(run_scene(o, scene, q, o.threads.back()));
+    const std::vector<int> frames = frame_counts(o, scene, qualities);
+    for (std::size_t q = 0; q < qualities.size(); ++q) {
+      ScenesOptions one = o;
+      one.frames = frames[q];
+      runs.push_back(run_scene(one, scene, qualities[q], o.threads.back()));
+    }
     if (std::any_of(runs.begin(), runs.end(), [](const SceneRun& r) { return r.exit_code != 0; })) {
       failed = true;
       std::printf("%-14s a run failed\n", scene.c_str());
