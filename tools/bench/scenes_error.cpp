@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <map>
+#include <set>
 #include <string_view>
 
 #include "engine/scene/scene.h"
@@ -35,7 +37,10 @@ Vec3 vector_of(const json& j) {
   return {j[0], j[1], j[2]};
 }
 
-Outcome outcome_of(const json& stats) {
+using Names = std::set<std::string>;
+
+// Volumes are of the bodies that may break: next to a table top all pieces are small.
+Outcome outcome_of(const json& stats, const Names& unbreakable) {
   Outcome o;
   for (const json& event : stats["events"]) {
     if (o.cracked || event["cracks"].empty() || !event.contains("solve")) continue;
@@ -49,7 +54,9 @@ Outcome outcome_of(const json& stats) {
   if (!stats["frames"].empty()) {
     double total = 0;
     for (const json& at : stats["frames"].back()["certificates"]) {
-      o.share.push_back(stats["certificates"][at.get<std::size_t>()]["volume"]);
+      const json& body = stats["certificates"][at.get<std::size_t>()];
+      if (unbreakable.count(body["body"]) > 0) continue;
+      o.share.push_back(body["volume"]);
       total += o.share.back();
     }
     for (double& v : o.share) v /= total;
@@ -67,21 +74,23 @@ double volume_distance(const Outcome& a, const Outcome& b) {
   return sum / 2;
 }
 
-// Largest stress of every event up to the one that cracks first, in their order; the rms of the differences over the
+// Of each body the largest stress of all events up to the one that cracks first; the rms of the differences over the
 // rms of the reference. To each its own first crack: steps of different length see the same impact at different times.
 double stress_distance(const json& a, double first_a, const json& b, double first_b) {
-  const auto history = [&](const json& stats, double first) {
-    std::vector<double> h;
-    for (const json& event : stats["events"])
-      if (event.contains("solve") && event["time"].get<double>() <= first + 1e-9)
-        h.push_back(event["solve"]["max_principal"]);
-    return h;
+  const auto largest = [](const json& stats, double first) {
+    std::map<std::string, double> of;
+    for (const json& event : stats["events"]) {
+      if (!event.contains("solve") || event["time"].get<double>() > first + 1e-9) continue;
+      double& most = of[event["body"]];
+      most = std::max(most, event["solve"]["max_principal"].get<double>());
+    }
+    return of;
   };
-  const std::vector<double> x = history(a, first_a), y = history(b, first_b);
+  std::map<std::string, double> x = largest(a, first_a), y = largest(b, first_b);
   double difference = 0, size = 0;
-  for (std::size_t i = 0; i < std::max(x.size(), y.size()); ++i) {
-    const double p = i < x.size() ? x[i] : 0, q = i < y.size() ? y[i] : 0;
-    difference += (p - q) * (p - q), size += q * q;
+  for (const auto& [body, stress] : x) y.try_emplace(body, 0);
+  for (const auto& [body, stress] : y) {
+    difference += (x[body] - stress) * (x[body] - stress), size += stress * stress;
   }
   return size > 0 ? std::sqrt(difference / size) : 0;
 }
@@ -149,9 +158,12 @@ json scene_errors(const ScenesOptions& o, const std::vector<std::string>& scenes
       std::printf("%-14s a run failed\n", scene.c_str());
       continue;
     }
-    const Outcome finest = outcome_of(runs.back().stats);
+    Names unbreakable;
+    for (const SceneBody& b : load_scene(scene_file(o, scene)).bodies)
+      if (b.fixed || !b.breakable) unbreakable.insert(b.name);
+    const Outcome finest = outcome_of(runs.back().stats, unbreakable);
     for (const SceneRun& run : runs) {
-      const Outcome at = outcome_of(run.stats);
+      const Outcome at = outcome_of(run.stats, unbreakable);
       const SceneNumbers n = scene_numbers(run.stats);
       const double place = at.cracked && finest.cracked ? distance(at.first_place, finest.first_place) : 0;
       json row{{"scene", scene},
