@@ -27,20 +27,26 @@ struct Outcome {
   double first_time = 0;  // s
   Vec3 first_place;       // material space, m
   std::string first_body;
-  double first_stress = 0;  // largest of the event, Pa
-  std::size_t pieces = 0;
+  double first_stress = 0;    // largest of the event, Pa
+  std::size_t pieces = 0;     // bodies at the end that may break, or came of one that broke
+  std::vector<double> share;  // of each of them of the volume of all of them, descending
+
   double loaded_until() const { return cracked ? first_time : std::numeric_limits<double>::infinity(); }
-  std::vector<double> share;  // of each body at the end of the volume of all, descending
 };
 
 Vec3 vector_of(const json& j) {
   return {j[0], j[1], j[2]};
 }
 
-using Names = std::set<std::string>;
+// Bodies that may not break are left out of the volumes: next to a table top all pieces are small.
+std::set<std::string> unbreakable_bodies(const Scene& scene) {
+  std::set<std::string> names;
+  for (const SceneBody& b : scene.bodies)
+    if (b.fixed || !b.breakable) names.insert(b.name);
+  return names;
+}
 
-// Volumes are of the bodies that may break: next to a table top all pieces are small.
-Outcome outcome_of(const json& stats, const Names& unbreakable) {
+Outcome outcome_of(const json& stats, const std::set<std::string>& unbreakable) {
   Outcome o;
   for (const json& event : stats["events"]) {
     if (o.cracked || event["cracks"].empty() || !event.contains("solve")) continue;
@@ -89,9 +95,7 @@ double stress_distance(const json& a, double first_a, const json& b, double firs
   std::map<std::string, double> x = largest(a, first_a), y = largest(b, first_b);
   double difference = 0, size = 0;
   for (const auto& [body, stress] : x) y.try_emplace(body, 0);
-  for (const auto& [body, stress] : y) {
-    difference += (x[body] - stress) * (x[body] - stress), size += stress * stress;
-  }
+  for (const auto& [body, stress] : y) difference += (x[body] - stress) * (x[body] - stress), size += stress * stress;
   return size > 0 ? std::sqrt(difference / size) : 0;
 }
 
@@ -158,36 +162,35 @@ json scene_errors(const ScenesOptions& o, const std::vector<std::string>& scenes
       std::printf("%-14s a run failed\n", scene.c_str());
       continue;
     }
-    Names unbreakable;
-    for (const SceneBody& b : load_scene(scene_file(o, scene)).bodies)
-      if (b.fixed || !b.breakable) unbreakable.insert(b.name);
+    const std::set<std::string> unbreakable = unbreakable_bodies(load_scene(scene_file(o, scene)));
     const Outcome finest = outcome_of(runs.back().stats, unbreakable);
     for (const SceneRun& run : runs) {
       const Outcome at = outcome_of(run.stats, unbreakable);
       const SceneNumbers n = scene_numbers(run.stats);
-      const double place = at.cracked && finest.cracked ? distance(at.first_place, finest.first_place) : 0;
-      json row{{"scene", scene},
-               {"quality", run.quality},
-               {"triangles", n.triangles},
-               {"solves", n.solves},
-               {"cpu_s", run.cpu_s},
-               {"wall_s", run.wall_s},
-               {"pieces", at.pieces},
-               {"volumes", at.share},
-               {"first_crack", {{"body", at.first_body}, {"time", at.first_time}, {"stress", at.first_stress}}}};
+      const bool both = at.cracked && finest.cracked;
+      const double place = both ? distance(at.first_place, finest.first_place) : 0;
+      json row{{"scene", scene},     {"quality", run.quality}, {"triangles", n.triangles}, {"solves", n.solves},
+               {"cpu_s", run.cpu_s}, {"wall_s", run.wall_s},   {"pieces", at.pieces},      {"volumes", at.share}};
+      if (at.cracked)
+        row["first_crack"] = {{"body", at.first_body}, {"time", at.first_time}, {"stress", at.first_stress}};
       const double volume = volume_distance(at, finest),
                    stress = stress_distance(run.stats, at.loaded_until(), runs.back().stats, finest.loaded_until());
       if (&run != &runs.back()) {
         row["volume_error"] = volume, row["stress_error"] = stress;
-        row["time_error_s"] = std::abs(at.first_time - finest.first_time);
-        row["place_distance"] = place;
-        row["same_body"] = at.first_body == finest.first_body;
+        if (both) {
+          row["time_error_s"] = std::abs(at.first_time - finest.first_time);
+          row["place_distance"] = place;
+          row["same_body"] = at.first_body == finest.first_body;
+        }
         row["pieces_error"] = std::abs(static_cast<double>(at.pieces) - static_cast<double>(finest.pieces)) /
-                              static_cast<double>(finest.pieces);
+                              static_cast<double>(std::max<std::size_t>(1, finest.pieces));
       }
-      std::printf("%-14s %-8s %9zu %9.1f %8zu %7.2f %10.4f %9s %8.2f %8zu\n", scene.c_str(), run.quality.c_str(),
-                  n.triangles, run.cpu_s, at.pieces, per_cent(volume), at.first_time,
-                  at.first_body == finest.first_body ? fmt::format("{:.1f}", 1000 * place).c_str() : "other",
+      std::printf("%-14s %-8s %9zu %9.1f %8zu %7.2f %10s %9s %8.2f %8zu\n", scene.c_str(), run.quality.c_str(),
+                  n.triangles, run.cpu_s, at.pieces, per_cent(volume),
+                  at.cracked ? fmt::format("{:.4f}", at.first_time).c_str() : "none",
+                  !both                                ? "-"
+                  : at.first_body == finest.first_body ? fmt::format("{:.1f}", 1000 * place).c_str()
+                                                       : "other body",
                   per_cent(stress), n.solves);
       std::fflush(stdout);
       rows.push_back(std::move(row));
